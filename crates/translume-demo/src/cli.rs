@@ -1,0 +1,98 @@
+//! What can be said on the command line.
+
+use clap::{Args, Parser, Subcommand};
+use std::path::PathBuf;
+
+const EXAMPLES: &str = "\
+Examples:
+  translume render creature --medium jade -o creature.png
+  translume render bunny.obj --medium skimmilk --size 1024 -o bunny.png
+  translume render creature --medium wax --frames 48 -o morph.png      an animated PNG
+  translume render --scene scene.json -o scene.exr                     linear radiance, full float
+  translume inspect bunny.obj --json
+
+MODEL is an OBJ, glTF or GLB file, or a built-in: sphere, torus-knot, teapot, creature.
+RUST_LOG=info shows what wgpu has to say; WGPU_ADAPTER_NAME picks an adapter.";
+
+/// Translucent objects that deform, rendered in real time.
+#[derive(Debug, Parser)]
+#[command(name = "translume", version, after_help = EXAMPLES, arg_required_else_help = true)]
+pub struct Arguments {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+/// A command.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Render a model or a scene to a PNG (tone-mapped sRGB) or an EXR (linear radiance).
+    #[command(after_help = EXAMPLES)]
+    Render(Render),
+    /// Tell what a model holds and how it unwraps.
+    #[command(after_help = EXAMPLES)]
+    Inspect(Inspect),
+}
+
+/// `translume render`.
+#[derive(Debug, Args)]
+pub struct Render {
+    /// OBJ, glTF or GLB file, or the name of a built-in model.
+    #[arg(required_unless_present = "scene", conflicts_with = "scene")]
+    pub model: Option<String>,
+    /// Scene description in JSON.
+    #[arg(long, value_name = "FILE.json")]
+    pub scene: Option<PathBuf>,
+    /// Medium by name, as jade, wax, skimmilk, marble, skin1; a wrong name lists them all.
+    #[arg(long, value_name = "NAME")]
+    pub medium: Option<String>,
+    /// Millimetres per unit of the model. By default a model is taken to be 100 mm from corner to corner.
+    #[arg(long, value_name = "X")]
+    pub mm_per_unit: Option<f32>,
+    /// Width of the picture in pixels; the height follows the scene's camera, else the picture is square.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=16384))]
+    pub size: Option<u32>,
+    /// Width of the atlas in texels.
+    #[arg(long, value_name = "N", default_value_t = 512)]
+    pub atlas: u32,
+    /// Diffuse profile: dipole (the paper's formula to the letter) or dipole-normalised.
+    #[arg(long, value_name = "NAME", default_value = "dipole-normalised")]
+    pub profile: String,
+    /// How the scatter sum is evaluated: tree, or all-pairs (exact and slow).
+    #[arg(long, value_name = "NAME", default_value = "tree")]
+    pub method: String,
+    /// Opening angle of the tree; smaller is more accurate.
+    #[arg(long, value_name = "X", default_value_t = 0.4)]
+    pub theta: f32,
+    /// Width of a shadow map in texels.
+    #[arg(long, value_name = "N", default_value_t = 2048)]
+    pub shadow: u32,
+    /// Samples per pixel along each axis.
+    #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u32).range(1..=8))]
+    pub samples: u32,
+    /// Brightness of a PNG, in stops.
+    #[arg(long, value_name = "EV", default_value_t = 0.0, allow_negative_numbers = true)]
+    pub exposure: f32,
+    /// Weight of each morph target, separated by commas.
+    #[arg(long, value_name = "W,…", value_delimiter = ',', allow_negative_numbers = true)]
+    pub morph: Vec<f32>,
+    /// Frames of an animated PNG: through the first morph target and back, or once around where there is none.
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=2000))]
+    pub frames: u32,
+    /// Picture to write, .png or .exr.
+    #[arg(short, long, value_name = "FILE")]
+    pub output: PathBuf,
+}
+
+/// `translume inspect`.
+#[derive(Debug, Args)]
+pub struct Inspect {
+    /// OBJ, glTF or GLB file, or the name of a built-in model.
+    pub model: String,
+    /// Print JSON.
+    #[arg(long)]
+    pub json: bool,
+    /// Width of the atlas in texels.
+    #[arg(long, value_name = "N", default_value_t = 512)]
+    pub atlas: u32,
+}

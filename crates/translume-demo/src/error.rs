@@ -1,0 +1,31 @@
+//! Everything that ends a command, in one line.
+
+use std::path::PathBuf;
+use translume_mesh::load::LoadError;
+use translume_mesh::{AtlasError, RepairError};
+
+#[derive(Debug, thiserror::Error)]
+pub enum Error {
+    #[error(transparent)]
+    Load(#[from] LoadError),
+    #[error(transparent)]
+    Repair(#[from] RepairError),
+    #[error(transparent)]
+    Atlas(#[from] AtlasError),
+    #[error(transparent)]
+    Translume(#[from] translume::Error),
+    #[error("{}: {problem}", path.display())]
+    Scene { path: PathBuf, problem: String },
+    #[error("{}: {problem}", path.display())]
+    Output { path: PathBuf, problem: String },
+    #[error("{option}: {problem}")]
+    Option { option: &'static str, problem: String },
+    #[error(
+        "no graphics adapter found ({0}); on Debian or Ubuntu `apt-get install libvulkan1 mesa-vulkan-drivers` brings a software one"
+    )]
+    NoAdapter(String),
+    #[error("{adapter}: no device: {reason}")]
+    NoDevice { adapter: String, reason: String },
+    #[error("{adapter}: {reason}")]
+    Gpu { adapter: String, reason: String },
+}

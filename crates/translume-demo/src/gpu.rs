@@ -1,0 +1,37 @@
+//! An adapter and its device.
+
+use crate::error::Error;
+use translume::wgpu;
+
+/// A device and the name of the adapter behind it.
+pub struct Gpu {
+    pub device: wgpu::Device,
+    pub queue: wgpu::Queue,
+    pub adapter: String,
+}
+
+impl Gpu {
+    /// The best adapter there is, with all its limits; `WGPU_ADAPTER_NAME` and `WGPU_BACKEND` have their say.
+    pub fn new() -> Result<Self, Error> {
+        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle().with_env());
+        let options = wgpu::RequestAdapterOptions {
+            power_preference: wgpu::PowerPreference::HighPerformance,
+            ..Default::default()
+        };
+        let adapter = match pollster::block_on(wgpu::util::initialize_adapter_from_env(&instance, None)) {
+            Ok(adapter) => adapter,
+            Err(_) => pollster::block_on(instance.request_adapter(&options))
+                .map_err(|error| Error::NoAdapter(error.to_string()))?,
+        };
+        let info = adapter.get_info();
+        let name = format!("{} ({}, {})", info.name, info.backend, info.driver_info);
+        let descriptor = wgpu::DeviceDescriptor {
+            label: Some("translume"),
+            required_limits: adapter.limits(),
+            ..Default::default()
+        };
+        let (device, queue) = pollster::block_on(adapter.request_device(&descriptor))
+            .map_err(|error| Error::NoDevice { adapter: name.clone(), reason: error.to_string() })?;
+        Ok(Self { device, queue, adapter: name })
+    }
+}

@@ -1,0 +1,30 @@
+//! `translume`: render and inspect translucent models.
+
+mod cli;
+mod error;
+mod gpu;
+mod inspect;
+mod model;
+mod picture;
+mod progress;
+mod render;
+mod scene;
+mod studio;
+
+use clap::Parser as _;
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    env_logger::Builder::from_env(env_logger::Env::default().default_filter_or("error")).init();
+    let result = match cli::Arguments::parse().command {
+        cli::Command::Render(arguments) => render::run(&arguments),
+        cli::Command::Inspect(arguments) => inspect::run(&arguments),
+    };
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            progress::tell(&format!("translume: {error}"));
+            ExitCode::from(2)
+        }
+    }
+}

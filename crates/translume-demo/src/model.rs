@@ -1,0 +1,43 @@
+//! From a name on the command line to a clean mesh and its atlas.
+
+use crate::error::Error;
+use crate::progress;
+use std::path::Path;
+use translume_mesh::{Atlas, AtlasOptions, Mesh, RepairReport, builtin, load};
+
+/// A mesh and what had to be done to it.
+pub struct Model {
+    pub mesh: Mesh,
+    pub repairs: RepairReport,
+}
+
+/// A built-in model by its name, else a file.
+pub fn open(name: &str) -> Result<Model, Error> {
+    if !Path::new(name).exists()
+        && let Some(mesh) = builtin::builtin(name)
+    {
+        return clean(mesh);
+    }
+    open_file(Path::new(name))
+}
+
+/// A mesh file.
+pub fn open_file(path: &Path) -> Result<Model, Error> {
+    let loaded = load::load(path)?;
+    Ok(Model { mesh: loaded.mesh, repairs: loaded.repairs })
+}
+
+/// A mesh made here, through the same checks as one from a file.
+pub fn clean(mesh: Mesh) -> Result<Model, Error> {
+    let (mesh, repairs) = translume_mesh::repair::repair(mesh)?;
+    Ok(Model { mesh, repairs })
+}
+
+/// Unwraps behind a progress bar.
+pub fn unwrap(mesh: &Mesh, size: u32) -> Result<Atlas, Error> {
+    let bar = progress::bar("unwrap");
+    let options = AtlasOptions { size, ..Default::default() };
+    let atlas = Atlas::build(mesh, &options, |step| progress::show(&bar, &step));
+    bar.finish_and_clear();
+    Ok(atlas?)
+}

@@ -1,0 +1,227 @@
+//! Pictures: from samples to pixels, and to files that are either whole or not there.
+
+use crate::error::Error;
+use std::io::{BufWriter, Write};
+use std::path::{Path, PathBuf};
+use tempfile::NamedTempFile;
+
+/// Linear radiance with coverage in alpha, row by row from the top.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Picture {
+    pub width: u32,
+    pub height: u32,
+    pub pixels: Vec<[f32; 4]>,
+}
+
+/// What a picture is written as.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    Png,
+    Exr,
+}
+
+/// Linear grey behind the body in a PNG.
+const BACKDROP: f32 = 0.018;
+const FRAMES_PER_SECOND: u16 = 24;
+
+impl Picture {
+    /// Averages `side`² samples a pixel.
+    pub fn from_samples(samples: &[[f32; 4]], samples_wide: u32, side: u32) -> Self {
+        let width = samples_wide / side;
+        let height = samples.len() as u32 / samples_wide / side;
+        let weight = 1.0 / (side * side) as f32;
+        let pixels = (0..height)
+            .flat_map(|y| (0..width).map(move |x| (x, y)))
+            .map(|(x, y)| {
+                let mut sum = [0.0; 4];
+                for row in y * side..(y + 1) * side {
+                    for column in x * side..(x + 1) * side {
+                        let sample = samples[(row * samples_wide + column) as usize];
+                        sum = std::array::from_fn(|k| sum[k] + sample[k] * weight);
+                    }
+                }
+                sum
+            })
+            .collect();
+        Self { width, height, pixels }
+    }
+
+    /// Tone-mapped 8-bit sRGB over the backdrop.
+    fn to_srgb(&self, exposure: f32) -> Vec<u8> {
+        let gain = exposure.exp2();
+        let pixels = self.pixels.iter().enumerate();
+        pixels
+            .flat_map(|(index, &[r, g, b, coverage])| {
+                let behind = BACKDROP * (1.0 - coverage);
+                let mapped = neutral([r, g, b].map(|c| c * gain + behind));
+                let noise = dither(index as u32 % self.width, index as u32 / self.width);
+                mapped.map(|c| (srgb(c) * 255.0 + noise).clamp(0.0, 255.0) as u8)
+            })
+            .collect()
+    }
+}
+
+/// Khronos PBR Neutral tone mapper (Khronos Group 2024): leaves colours below 0.8 as they are and desaturates what is brighter.
+fn neutral(colour: [f32; 3]) -> [f32; 3] {
+    const START: f32 = 0.8 - 0.04;
+    const DESATURATION: f32 = 0.15;
+    let least = colour.into_iter().fold(f32::INFINITY, f32::min).max(0.0);
+    let offset = if least < 0.08 { least - 6.25 * least * least } else { 0.04 };
+    let colour = colour.map(|c| c.max(0.0) - offset);
+    let peak = colour.into_iter().fold(0.0, f32::max);
+    if peak < START {
+        return colour;
+    }
+    let room = 1.0 - START;
+    let new_peak = 1.0 - room * room / (peak + room - START);
+    let whiteness = 1.0 - 1.0 / (DESATURATION * (peak - new_peak) + 1.0);
+    colour.map(|c| c * new_peak / peak * (1.0 - whiteness) + new_peak * whiteness)
+}
+
+/// IEC 61966-2-1.
+fn srgb(linear: f32) -> f32 {
+    if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 }
+}
+
+/// One rounding step of interleaved gradient noise (Jimenez 2014), so that smooth light does not show bands of 8 bits.
+fn dither(x: u32, y: u32) -> f32 {
+    (52.982_918 * (0.067_110_56 * x as f32 + 0.005_837_15 * y as f32).fract()).fract()
+}
+
+/// A picture's file, checked before the work begins and put in place when the work is done.
+pub struct Output {
+    path: PathBuf,
+    directory: PathBuf,
+    pub format: Format,
+}
+
+impl Output {
+    /// Checks the name's ending and that the directory is there.
+    pub fn new(path: &Path) -> Result<Self, Error> {
+        let fail = |problem: &str| Err(Error::Output { path: path.to_owned(), problem: problem.to_owned() });
+        let ending = path.extension().map(|ending| ending.to_ascii_lowercase());
+        let format = match ending.as_deref().and_then(|ending| ending.to_str()) {
+            Some("png") => Format::Png,
+            Some("exr") => Format::Exr,
+            _ => return fail("unknown kind of picture; the name must end in .png or .exr"),
+        };
+        let directory = match path.parent() {
+            Some(parent) if !parent.as_os_str().is_empty() => parent.to_owned(),
+            _ => PathBuf::from("."),
+        };
+        if !directory.is_dir() {
+            return fail("its directory does not exist; make it first");
+        }
+        if path.is_dir() {
+            return fail("is a directory; name a file");
+        }
+        Ok(Self { path: path.to_owned(), directory, format })
+    }
+
+    /// Writes one picture, or an animation of several.
+    pub fn write(&self, frames: &[Picture], exposure: f32) -> Result<(), Error> {
+        let fail = |problem: String| Error::Output { path: self.path.clone(), problem };
+        let mut file = NamedTempFile::new_in(&self.directory).map_err(|error| fail(format!("cannot be written: {error}")))?;
+        match self.format {
+            Format::Png => write_png(&mut file, frames, exposure).map_err(|error| fail(error.to_string()))?,
+            Format::Exr => write_exr(&mut file, &frames[0]).map_err(|error| fail(error.to_string()))?,
+        }
+        readable_by_all(file.as_file()).map_err(|error| fail(error.to_string()))?;
+        file.persist(&self.path).map_err(|error| fail(format!("cannot be written: {}", error.error)))?;
+        Ok(())
+    }
+}
+
+/// Temporary files belong to their owner alone; a picture is like any other file.
+fn readable_by_all(file: &std::fs::File) -> std::io::Result<()> {
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt as _;
+        file.set_permissions(std::fs::Permissions::from_mode(0o644))?;
+    }
+    file.sync_all()
+}
+
+fn write_png(file: &mut NamedTempFile, frames: &[Picture], exposure: f32) -> Result<(), png::EncodingError> {
+    let mut encoder = png::Encoder::new(BufWriter::new(file), frames[0].width, frames[0].height);
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_depth(png::BitDepth::Eight);
+    encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
+    if frames.len() > 1 {
+        encoder.set_animated(frames.len() as u32, 0)?;
+        encoder.set_frame_delay(1, FRAMES_PER_SECOND)?;
+    }
+    let mut writer = encoder.write_header()?;
+    for frame in frames {
+        writer.write_image_data(&frame.to_srgb(exposure))?;
+    }
+    writer.finish()
+}
+
+fn write_exr(file: &mut NamedTempFile, picture: &Picture) -> exr::error::UnitResult {
+    use exr::prelude::{Image, SpecificChannels, WritableImage as _};
+    let size = (picture.width as usize, picture.height as usize);
+    let channels = SpecificChannels::rgb(|position: exr::math::Vec2<usize>| {
+        let [r, g, b, _] = picture.pixels[position.y() * size.0 + position.x()];
+        (r, g, b)
+    });
+    let mut bytes = std::io::Cursor::new(Vec::new());
+    Image::from_channels(size, channels).write().to_buffered(&mut bytes)?;
+    Ok(file.write_all(bytes.get_ref())?)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn grey(level: f32) -> Picture {
+        Picture { width: 4, height: 3, pixels: vec![[level, level, level, 1.0]; 12] }
+    }
+
+    #[test]
+    fn samples_are_averaged() {
+        let samples = [[0.0; 4], [2.0; 4], [4.0; 4], [6.0; 4]];
+        assert_eq!(Picture::from_samples(&samples, 2, 2), Picture { width: 1, height: 1, pixels: vec![[3.0; 4]] });
+        assert_eq!(Picture::from_samples(&samples, 2, 1).height, 2);
+    }
+
+    #[test]
+    fn dark_colours_pass_the_tone_mapper_and_bright_ones_stay_below_white() {
+        for level in [0.1, 0.3, 0.6] {
+            let [r, g, b] = neutral([level + 0.04, level, level]);
+            assert!(r > g && (g - b).abs() < 1e-6 && (r - level).abs() < 1e-6);
+        }
+        for level in [1.0, 10.0, 1e6] {
+            assert!(neutral([level, 0.5, 0.0]).iter().all(|c| (0.0..=1.0).contains(c)));
+        }
+    }
+
+    #[test]
+    fn files_are_whole_or_absent() {
+        let directory = tempfile::tempdir().unwrap();
+        for name in ["grey.png", "grey.exr"] {
+            let path = directory.path().join(name);
+            Output::new(&path).unwrap().write(&[grey(0.25)], 0.0).unwrap();
+            assert!(std::fs::metadata(&path).unwrap().len() > 50);
+        }
+        assert_eq!(std::fs::read_dir(directory.path()).unwrap().count(), 2, "no temporary file stays behind");
+        assert!(Output::new(&directory.path().join("grey.bmp")).is_err());
+        assert!(Output::new(&directory.path().join("nowhere/grey.png")).is_err());
+    }
+
+    #[test]
+    fn exr_keeps_every_bit() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("a.exr");
+        let mut picture = grey(0.0);
+        picture.pixels[5] = [1.5, 70_000.0, 1e-7, 1.0];
+        Output::new(&path).unwrap().write(std::slice::from_ref(&picture), 3.0).unwrap();
+        let read = exr::prelude::read_first_rgba_layer_from_file(
+            &path,
+            |size, _| vec![[0.0_f32; 4]; size.area()],
+            |pixels, at, (r, g, b, a): (f32, f32, f32, f32)| pixels[at.y() * 4 + at.x()] = [r, g, b, a],
+        )
+        .unwrap();
+        assert_eq!(read.layer_data.channel_data.pixels[5][..3], picture.pixels[5][..3]);
+    }
+}

@@ -1,0 +1,320 @@
+//! The scene format: JSON, lengths in the unit it states, linear colours. Unknown fields and types are errors that name them.
+
+use crate::error::Error;
+use crate::model;
+use serde::Deserialize;
+use std::path::{Path, PathBuf};
+use translume::{AmbientLight, DirectionalLight, Light, Medium, PointLight, Region};
+use translume_mesh::builtin;
+
+/// A scene file.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Scene {
+    #[serde(default)]
+    #[allow(dead_code, reason = "read by people")]
+    pub name: String,
+    #[serde(default)]
+    #[allow(dead_code, reason = "read by people")]
+    pub purpose: String,
+    /// "mm" (default), "cm" or "m".
+    #[serde(default)]
+    pub length_unit: LengthUnit,
+    pub shape: Shape,
+    /// Coefficients in 1/mm.
+    pub material: Option<Material>,
+    /// A preset by name instead of `material`.
+    pub medium: Option<String>,
+    pub lights: Option<Vec<SceneLight>>,
+    pub camera: Option<SceneCamera>,
+    /// Weight of each morph target.
+    #[serde(default)]
+    pub morph: Vec<f32>,
+}
+
+#[derive(Clone, Copy, Debug, Default, Deserialize)]
+pub enum LengthUnit {
+    #[default]
+    #[serde(rename = "mm")]
+    Millimetre,
+    #[serde(rename = "cm")]
+    Centimetre,
+    #[serde(rename = "m")]
+    Metre,
+}
+
+impl LengthUnit {
+    pub fn mm(self) -> f32 {
+        match self {
+            Self::Millimetre => 1.0,
+            Self::Centimetre => 10.0,
+            Self::Metre => 1000.0,
+        }
+    }
+}
+
+#[derive(Clone, Debug, Deserialize)]
+#[serde(tag = "type", rename_all = "snake_case", deny_unknown_fields)]
+pub enum Shape {
+    Mesh {
+        file: PathBuf,
+        #[serde(default)]
+        normals: Normals,
+    },
+    Sphere {
+        center: [f32; 3],
+        radius: f32,
+    },
+    Box {
+        min: [f32; 3],
+        max: [f32; 3],
+    },
+    Builtin {
+        name: String,
+        #[serde(default)]
+        normals: Normals,
+    },
+}
+
+#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq)]
+#[serde(rename_all = "snake_case")]
+pub enum Normals {
+    #[default]
+    Smooth,
+    Flat,
+}
+
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Material {
+    pub sigma_s_prime: [f32; 3],
+    pub sigma_a: [f32; 3],
+    /// Mean cosine of the phase function. `sigma_s_prime` is already reduced by it, and diffusion needs no more.
+    #[serde(default)]
+    pub g: f32,
+    #[serde(default = "one")]
+    pub eta: f32,
+}
+
+fn one() -> f32 {
+    1.0
+}
+
+fn lit() -> bool {
+    true
+}
+
+#[derive(Clone, Debug, Deserialize)]
+#[serde(tag = "type", rename_all = "snake_case", deny_unknown_fields)]
+pub enum SceneLight {
+    Directional {
+        to_light: [f32; 3],
+        irradiance: [f32; 3],
+        #[serde(default = "lit")]
+        shadow: bool,
+        lit_region: Option<LitRegion>,
+    },
+    Point {
+        position: [f32; 3],
+        intensity: [f32; 3],
+        #[serde(default = "lit")]
+        shadow: bool,
+        lit_region: Option<LitRegion>,
+    },
+    ConstantEnv {
+        radiance: [f32; 3],
+    },
+    CapEnv {
+        radiance: [f32; 3],
+        axis: [f32; 3],
+        half_angle_deg: f32,
+    },
+}
+
+/// Light enters only through the face y = 0, and only where the coordinate is at least `min`.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LitRegion {
+    pub axis: Axis,
+    pub min: f32,
+    #[serde(default)]
+    #[allow(dead_code, reason = "read by people")]
+    pub note: String,
+}
+
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Axis {
+    X,
+    Y,
+    Z,
+}
+
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SceneCamera {
+    pub eye: [f32; 3],
+    pub target: [f32; 3],
+    #[serde(default = "y_up")]
+    pub up: [f32; 3],
+    /// Full horizontal angle.
+    pub fov_deg: f32,
+    pub width: u32,
+    pub height: u32,
+}
+
+fn y_up() -> [f32; 3] {
+    [0.0, 1.0, 0.0]
+}
+
+impl Scene {
+    /// Reads a scene file.
+    pub fn read(path: &Path) -> Result<Self, Error> {
+        let fail = |problem: String| Error::Scene { path: path.to_owned(), problem };
+        let text = std::fs::read_to_string(path).map_err(|error| fail(format!("cannot be read: {error}")))?;
+        let scene: Self = serde_json::from_str(&text).map_err(|error| fail(format!("is not a scene: {error}")))?;
+        if scene.material.is_some() && scene.medium.is_some() {
+            return Err(fail("has both `material` and `medium`; keep one".to_owned()));
+        }
+        if scene.material.is_some_and(|material| !(-1.0..1.0).contains(&material.g)) {
+            return Err(fail("material.g must lie between −1 and 1".to_owned()));
+        }
+        if let Some(camera) = &scene.camera {
+            camera.validate().map_err(|problem| fail(format!("camera: {problem}")))?;
+        }
+        Ok(scene)
+    }
+
+    /// The scene's medium, if it says one.
+    pub fn medium(&self) -> Result<Option<Medium>, Error> {
+        if let Some(name) = &self.medium {
+            return Ok(Some(Medium::preset(name)?));
+        }
+        Ok(self.material.map(|m| Medium { sigma_s_prime: m.sigma_s_prime, sigma_a: m.sigma_a, ior: m.eta }))
+    }
+
+    /// The scene's mesh, its path taken relative to the scene file at `path`, and whether its triangles keep their own normals.
+    pub fn model(&self, path: &Path) -> Result<(model::Model, bool), Error> {
+        match &self.shape {
+            Shape::Mesh { file, normals } => {
+                let file = path.parent().unwrap_or(Path::new("")).join(file);
+                Ok((model::open_file(&file)?, *normals == Normals::Flat))
+            }
+            // 20,480 triangles: no point of the surface is further than 0.02 % of the radius from the sphere.
+            Shape::Sphere { center, radius } => Ok((model::clean(builtin::sphere(*center, *radius, 5))?, false)),
+            Shape::Box { min, max } => Ok((model::clean(builtin::cuboid(*min, *max, [8; 3]))?, false)),
+            Shape::Builtin { name, normals } => {
+                let mesh = builtin::builtin(name).ok_or_else(|| Error::Scene {
+                    path: path.to_owned(),
+                    problem: format!("no built-in is called \"{name}\"; known are {}", builtin::NAMES.join(", ")),
+                })?;
+                Ok((model::clean(mesh)?, *normals == Normals::Flat))
+            }
+        }
+    }
+}
+
+impl SceneCamera {
+    fn validate(&self) -> Result<(), String> {
+        let sight: [f32; 3] = std::array::from_fn(|k| self.target[k] - self.eye[k]);
+        let side = glam::Vec3::from(sight).cross(self.up.into());
+        if !side.is_finite() || side.length_squared() == 0.0 {
+            return Err("eye, target and up must be finite, apart, and not in one line".to_owned());
+        }
+        if !(self.fov_deg > 0.0 && self.fov_deg < 180.0) {
+            return Err(format!("fov_deg is {}, but must lie between 0 and 180", self.fov_deg));
+        }
+        if self.width == 0 || self.height == 0 {
+            return Err(format!("the picture is {} × {} pixels", self.width, self.height));
+        }
+        Ok(())
+    }
+}
+
+impl LitRegion {
+    fn region(&self, surface: f32) -> Region {
+        let mut low = [f32::MIN; 3];
+        low[1] = surface;
+        let axis = self.axis as usize;
+        low[axis] = low[axis].max(self.min);
+        Region { low, high: [f32::MAX; 3] }
+    }
+}
+
+impl SceneLight {
+    /// As the library takes it. `just_below_y0` is the height that still counts as the face y = 0.
+    pub fn light(&self, just_below_y0: f32) -> Light {
+        let region = |lit: &Option<LitRegion>| lit.as_ref().map(|lit| lit.region(just_below_y0));
+        match self {
+            Self::Directional { to_light, irradiance, shadow, lit_region } => Light::Directional(DirectionalLight {
+                to_light: *to_light,
+                irradiance: *irradiance,
+                shadow: *shadow,
+                region: region(lit_region),
+            }),
+            Self::Point { position, intensity, shadow, lit_region } => Light::Point(PointLight {
+                position: *position,
+                intensity: *intensity,
+                shadow: *shadow,
+                region: region(lit_region),
+            }),
+            Self::ConstantEnv { radiance } => Light::Ambient(AmbientLight { radiance: *radiance, ..Default::default() }),
+            Self::CapEnv { radiance, axis, half_angle_deg } => Light::Ambient(AmbientLight {
+                radiance: *radiance,
+                axis: *axis,
+                half_angle: half_angle_deg.to_radians(),
+            }),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read(text: &str) -> Result<Scene, Error> {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("scene.json");
+        std::fs::write(&path, text).unwrap();
+        Scene::read(&path)
+    }
+
+    const SPHERE: &str = r#""shape": { "type": "sphere", "center": [0, 0, 0], "radius": 10 }"#;
+
+    #[test]
+    fn the_least_scene_is_a_shape() {
+        let scene = read(&format!("{{ {SPHERE} }}")).unwrap();
+        assert!(scene.lights.is_none() && scene.camera.is_none() && scene.medium().unwrap().is_none());
+    }
+
+    #[test]
+    fn what_is_unknown_is_named() {
+        let cases = [
+            (format!(r#"{{ {SPHERE}, "colour": 3 }}"#), "colour"),
+            (r#"{ "shape": { "type": "pyramid" } }"#.to_owned(), "pyramid"),
+            (format!(r#"{{ {SPHERE}, "lights": [{{ "type": "laser" }}] }}"#), "laser"),
+            (
+                format!(r#"{{ {SPHERE}, "lights": [{{ "type": "constant_env", "radiance": [1,1,1], "tint": 1 }}] }}"#),
+                "tint",
+            ),
+            (format!(r#"{{ {SPHERE}, "length_unit": "inch" }}"#), "inch"),
+        ];
+        for (text, name) in cases {
+            let message = read(&text).unwrap_err().to_string();
+            assert!(message.contains(name) && message.contains("scene.json"), "{message}");
+        }
+    }
+
+    #[test]
+    fn a_camera_without_direction_is_refused() {
+        let camera = r#""camera": { "eye": [0,0,0], "target": [0,0,0], "fov_deg": 20, "width": 8, "height": 8 }"#;
+        assert!(read(&format!("{{ {SPHERE}, {camera} }}")).unwrap_err().to_string().contains("camera"));
+    }
+
+    #[test]
+    fn a_lit_region_cuts_one_axis_and_the_face() {
+        let region = LitRegion { axis: Axis::X, min: 2.0, note: String::new() }.region(-0.1);
+        assert_eq!((region.low[0], region.low[1]), (2.0, -0.1));
+        assert_eq!(region.low[2], f32::MIN);
+    }
+}

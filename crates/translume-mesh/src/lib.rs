@@ -1,0 +1,28 @@
+//! The ground floor of translume: any mesh becomes an [`Atlas`] fit for light.
+//!
+//! | module | what it does |
+//! | --- | --- |
+//! | [`mesh`] | the [`Mesh`] everything speaks: positions, normals, triangles, morph targets |
+//! | [`load`] | OBJ, glTF and GLB files, with errors that name the element |
+//! | [`repair`] | drops what cannot carry light, counts what it dropped |
+//! | [`normals`] | vertex normals at rest, and which triangles make them up on any pose |
+//! | [`atlas`] | charts and packing (by `uvunwrap`), the one-time raster into texels, gutters, texel order |
+//! | [`builtin`] | sphere, torus knot, Newell's teapot, and the creature that melts into an egg |
+//!
+//! Nothing here knows a GPU. Lengths are the model's own units throughout; `translume` converts to millimetres.
+
+pub mod atlas;
+#[cfg(feature = "builtin")]
+pub mod builtin;
+#[cfg(feature = "load")]
+pub mod load;
+pub mod mesh;
+pub mod normals;
+pub mod repair;
+mod weld;
+
+pub use atlas::{Atlas, AtlasError, AtlasReport, AtlasVertex, Texel};
+#[cfg(feature = "unwrap")]
+pub use atlas::{AtlasOptions, Progress};
+pub use mesh::{Mesh, MorphTarget};
+pub use repair::{RepairError, RepairReport};

@@ -1,0 +1,137 @@
+//! Mesh files: OBJ, glTF and GLB.
+//!
+//! A loader never panics, whatever the file holds, and reserves no memory that the file's own length does not
+//! justify. Its errors name the file, the element and a way out.
+
+mod accessor;
+mod buffers;
+mod gltf;
+mod obj;
+
+use std::path::Path;
+
+use crate::mesh::Mesh;
+use crate::repair::{RepairError, RepairReport, repair};
+
+/// Extensions that [`load`] reads, in lower case.
+pub const EXTENSIONS: [&str; 3] = ["obj", "gltf", "glb"];
+
+/// A clean mesh from a file.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Loaded {
+    /// The mesh, named after the file.
+    pub mesh: Mesh,
+    /// What had to be repaired.
+    pub repairs: RepairReport,
+    /// What a unit of the file is, where the format says so: 1 for glTF (its specification, section 3.4), `None` for OBJ.
+    pub metres_per_unit: Option<f32>,
+}
+
+/// Why a file could not be loaded.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum LoadError {
+    /// The file, or one it refers to, cannot be read.
+    #[error("{file}: cannot be read: {reason}; check the path and its permissions")]
+    Read {
+        /// The file.
+        file: String,
+        /// What the operating system said.
+        reason: String,
+    },
+    /// The extension is none that the loader knows.
+    #[error("{file}: its extension is none of .obj, .gltf, .glb; convert it to one of them")]
+    UnknownExtension {
+        /// The file.
+        file: String,
+    },
+    /// The file has the right extension and other contents, or no triangle.
+    #[error("{file}: is not a mesh: {reason}; export it again as a triangle mesh")]
+    NotAMesh {
+        /// The file.
+        file: String,
+        /// What was found, or missed.
+        reason: String,
+    },
+    /// A line of an OBJ file cannot be understood.
+    #[error("{file}: line {line}: {reason}; re-export the file or correct the line")]
+    Line {
+        /// The file.
+        file: String,
+        /// The line, from 1.
+        line: usize,
+        /// What is wrong with it.
+        reason: String,
+    },
+    /// A face of an OBJ file names a vertex or normal that does not exist.
+    #[error(
+        "{file}: face {face} uses {element} {index}, but there are {count}; re-export the file or repair its indices"
+    )]
+    Face {
+        /// The file.
+        file: String,
+        /// The face, counted from 1 in the order of the file.
+        face: usize,
+        /// `vertex` or `normal`.
+        element: &'static str,
+        /// The index as the file has it: from 1, or negative and counted backwards.
+        index: i64,
+        /// How many there are.
+        count: usize,
+    },
+    /// A vertex that a face of an OBJ file uses is not a point.
+    #[error("{file}: vertex {vertex} is at {position:?}; re-export the file or remove the vertex")]
+    Vertex {
+        /// The file.
+        file: String,
+        /// The vertex, from 1.
+        vertex: usize,
+        /// Where it is said to be.
+        position: [f32; 3],
+    },
+    /// An element of a glTF file contradicts the file or the format.
+    #[error("{file}: {element}: {reason}; check the file with a glTF validator and re-export it")]
+    Gltf {
+        /// The file.
+        file: String,
+        /// The element, by its place in the JSON: `meshes[0].primitives[1]`.
+        element: String,
+        /// What is wrong with it.
+        reason: String,
+    },
+    /// The file is well formed and its mesh cannot be made clean.
+    #[error(transparent)]
+    Repair(#[from] RepairError),
+}
+
+/// Reads a mesh and repairs it. The extension, in any case, decides the format.
+///
+/// OBJ: faces of any arity become fans (right for convex ones), objects and groups merge, vertices split where normals
+/// differ, texture coordinates and materials are ignored. glTF and GLB: the nodes of the default scene, with their
+/// transforms, merge into one mesh; morph targets merge by index; skinned meshes keep their bind pose. Target names stay
+/// empty: glTF keeps them in application data.
+///
+/// # Errors
+/// [`LoadError`], which names the file and the element.
+pub fn load(path: &Path) -> Result<Loaded, LoadError> {
+    let extension = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase());
+    let file = path.display().to_string();
+    let (mut mesh, metres_per_unit) = match extension.as_deref() {
+        Some("obj") => (obj::read(&file, &read_file(path)?)?, None),
+        Some("gltf" | "glb") => (gltf::read(path, &read_file(path)?)?, Some(1.0)),
+        _ => return Err(LoadError::UnknownExtension { file }),
+    };
+    mesh.name = path.file_name().map_or(file, |name| name.to_string_lossy().into_owned());
+    let (mesh, repairs) = repair(mesh)?;
+    Ok(Loaded { mesh, repairs, metres_per_unit })
+}
+
+fn read_file(path: &Path) -> Result<Vec<u8>, LoadError> {
+    let error = |reason: String| LoadError::Read { file: path.display().to_string(), reason };
+    // Devices and pipes may never end.
+    if !std::fs::metadata(path).map_err(|e| error(e.to_string()))?.is_file() {
+        return Err(error("it is not a regular file".into()));
+    }
+    std::fs::read(path).map_err(|e| error(e.to_string()))
+}

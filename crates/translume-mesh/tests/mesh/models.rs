@@ -1,0 +1,68 @@
+use std::path::PathBuf;
+
+use translume_mesh::load::load;
+use translume_mesh::{Atlas, AtlasOptions};
+
+use crate::atlas::area_error;
+
+fn models() -> Option<PathBuf> {
+    std::env::var_os("TRANSLUME_MODELS").map(PathBuf::from)
+}
+
+#[test]
+fn real_models_load_and_unwrap() {
+    let Some(folder) = models() else { return };
+    for name in ["spot.obj", "Fox.glb"] {
+        let loaded = load(&folder.join(name)).unwrap();
+        let options = AtlasOptions { size: 128, ..Default::default() };
+        let atlas = Atlas::build(&loaded.mesh, &options, |_| true).unwrap();
+        let error = area_error(&atlas, &loaded.mesh);
+        println!("{name}: {}; {:?}", loaded.repairs, atlas.report);
+        // Single areas are stored in f32, 6e-8 each.
+        assert!(error < 1e-5, "{name}: {error:e}");
+        assert!(atlas.report.covered_texels > 128 * 128 / 4);
+        assert_eq!((atlas.report.flipped, atlas.report.overlapping_texels), (0, 0), "{name}");
+    }
+}
+
+/// Figures for every model: `cargo test --release -p translume-mesh -- --ignored --nocapture every_model`.
+#[test]
+#[ignore = "takes seconds per model; for reading, in release"]
+fn every_model_in_figures() {
+    let Some(folder) = models() else { return };
+    let mut files: Vec<PathBuf> =
+        std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+    files.sort();
+    for file in files.iter().filter(|f| f.extension().is_some_and(|e| e != "md")) {
+        let start = std::time::Instant::now();
+        let loaded = load(file).unwrap();
+        let seconds = start.elapsed().as_secs_f64();
+        let mesh = &loaded.mesh;
+        println!(
+            "{}: {} triangles, {} vertices, {} targets, loaded in {seconds:.3} s; {}",
+            mesh.name,
+            mesh.triangles.len(),
+            mesh.positions.len(),
+            mesh.targets.len(),
+            loaded.repairs
+        );
+        for size in [128, 256, 512] {
+            let options = AtlasOptions { size, ..Default::default() };
+            match Atlas::build(mesh, &options, |_| true) {
+                Ok(atlas) => {
+                    let start = std::time::Instant::now();
+                    let again =
+                        Atlas::from_uvs(mesh, size, atlas.vertices.clone(), atlas.triangles.clone()).unwrap();
+                    println!(
+                        "  {size}²: {} texels, raster and order {:.3} s, area error {:.1e}, {:?}",
+                        again.texels.len(),
+                        start.elapsed().as_secs_f64(),
+                        area_error(&atlas, mesh),
+                        atlas.report
+                    );
+                }
+                Err(error) => println!("  {size}²: {error}"),
+            }
+        }
+    }
+}

@@ -1,0 +1,38 @@
+//! CPU ground truth for translume, in double precision and without a GPU: the judge of every stage.
+//!
+//! | module | what it computes |
+//! | --- | --- |
+//! | [`medium`], [`fresnel`], [`dipole`] | the optics: coefficients, exact Fresnel terms, the diffuse reflectance profile |
+//! | [`surface`], [`lights`] | the scene: triangles with ray queries, and what illuminates them |
+//! | [`deform`] | positions and normals of a morphed pose |
+//! | [`gather`] | position, normal, live area and irradiance of every texel, shadows by ray casting |
+//! | [`cluster`] | sums of texels up the tree |
+//! | [`scatter`] | radiant exitance from all pairs of texels, with the profile averaged over each source |
+//! | [`converged`] | radiant exitance from the triangles themselves: what `scatter` tends to with ever more texels |
+//! | [`composite`] | the camera's picture |
+//! | [`metrics`] | how far a picture is from another |
+//!
+//! The stages carry the names of the GPU stages they judge and share no code with them. Lengths are millimetres,
+//! colours linear RGB, angles radians.
+
+pub mod cluster;
+pub mod composite;
+pub mod converged;
+pub mod deform;
+pub mod dipole;
+pub mod fresnel;
+pub mod gather;
+pub mod lights;
+pub mod medium;
+pub mod metrics;
+mod quadrature;
+mod rgb;
+pub mod scatter;
+pub mod surface;
+#[cfg(test)]
+mod testing;
+
+pub use dipole::Dipole;
+pub use lights::Light;
+pub use medium::Medium;
+pub use surface::{Hit, Surface};

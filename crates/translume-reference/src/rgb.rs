@@ -1,0 +1,16 @@
+//! Linear RGB triples.
+
+/// Adds `colour · factor` to `sum`.
+pub(crate) fn accumulate(sum: &mut [f64; 3], colour: [f64; 3], factor: f64) {
+    for (total, value) in sum.iter_mut().zip(colour) {
+        *total += value * factor;
+    }
+}
+
+pub(crate) fn scale(colour: [f64; 3], factor: f64) -> [f64; 3] {
+    colour.map(|value| value * factor)
+}
+
+pub(crate) fn mean(colour: [f64; 3]) -> f64 {
+    colour.iter().sum::<f64>() / 3.0
+}

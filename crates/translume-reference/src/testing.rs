@@ -1,0 +1,79 @@
+//! Shapes and assertions that several tests share.
+
+use translume_mesh::{Atlas, AtlasReport, AtlasVertex, Texel};
+
+pub(crate) fn assert_rel(measured: f64, expected: f64, tolerance: f64, what: &str) {
+    let error = (measured - expected).abs();
+    assert!(
+        error <= tolerance * expected.abs(),
+        "{what}: {measured:e} against {expected:e}, relative error {:e}",
+        error / expected.abs()
+    );
+}
+
+/// A square of side `2·half` in the plane y = `height`, facing up: two triangles. In a square atlas u runs along x and
+/// v along −z.
+pub(crate) fn square(half: f64, height: f64) -> (Vec<[f64; 3]>, Vec<[u32; 3]>) {
+    let corner = |x: f64, z: f64| [x * half, height, z * half];
+    (
+        vec![corner(-1.0, 1.0), corner(1.0, 1.0), corner(1.0, -1.0), corner(-1.0, -1.0)],
+        vec![[0, 1, 2], [0, 2, 3]],
+    )
+}
+
+/// The atlas of [`square`] with the whole texture covered by `size`² texels, in rows.
+pub(crate) fn square_atlas(size: u32, half: f64) -> Atlas {
+    let uv = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+    let side = 2.0 * half / f64::from(size);
+    let texel = |k: u32| {
+        let (column, row) = (k % size, k / size);
+        let at = |k: u32| (k as f32 + 0.5) / size as f32;
+        let (u, v) = (at(column), at(row));
+        // (u, v) = b·(1, 0) + c·(1, 1) below the diagonal and b·(1, 1) + c·(0, 1) above it.
+        let (triangle, barycentric) = if u >= v { (0, [u - v, v]) } else { (1, [u, v - u]) };
+        Texel { pixel: [column as u16, row as u16], triangle, barycentric, area: (side * side) as f32 }
+    };
+    Atlas {
+        size,
+        vertices: uv.iter().enumerate().map(|(k, &uv)| AtlasVertex { xref: k as u32, uv }).collect(),
+        triangles: vec![[0, 1, 2], [0, 2, 3]],
+        texels: (0..size * size).map(texel).collect(),
+        pixels: (0..size * size).collect(),
+        report: AtlasReport::default(),
+    }
+}
+
+/// A sphere of triangles with vertices on the radius: an octahedron split `levels` times.
+pub(crate) fn octasphere(radius: f64, levels: u32) -> (Vec<[f64; 3]>, Vec<[u32; 3]>) {
+    let mut positions: Vec<glam::DVec3> =
+        [[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]]
+            .map(|p: [i32; 3]| glam::DVec3::from(p.map(f64::from)))
+            .to_vec();
+    let mut triangles: Vec<[u32; 3]> =
+        vec![[0, 2, 4], [2, 1, 4], [1, 3, 4], [3, 0, 4], [2, 0, 5], [1, 2, 5], [3, 1, 5], [0, 3, 5]];
+    for _ in 0..levels {
+        let mut middles = std::collections::HashMap::new();
+        let mut middle = |positions: &mut Vec<glam::DVec3>, a: u32, b: u32| {
+            *middles.entry((a.min(b), a.max(b))).or_insert_with(|| {
+                positions.push((positions[a as usize] + positions[b as usize]).normalize());
+                positions.len() as u32 - 1
+            })
+        };
+        let split = |[a, b, c]: [u32; 3]| {
+            let [ab, bc, ca] = [(a, b), (b, c), (c, a)].map(|(i, j)| middle(&mut positions, i, j));
+            [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]
+        };
+        triangles = triangles.into_iter().flat_map(split).collect();
+    }
+    (positions.into_iter().map(|p| (p * radius).to_array()).collect(), triangles)
+}
+
+/// B/E on a sphere of radius `r` under uniform irradiance: a/2 [g(z_r) + g(z_v)],
+/// g(z) = e^(−σ_tr z) − z/D e^(−σ_tr D), D² = 4 r² + z². The chord measure of a sphere is that of a disc of radius 2r.
+pub(crate) fn sphere_exitance(dipole: &crate::Dipole, r: f64) -> f64 {
+    let g = |z: f64| {
+        let d = (4.0 * r * r + z * z).sqrt();
+        (-dipole.sigma_tr * z).exp() - z / d * (-dipole.sigma_tr * d).exp()
+    };
+    0.5 * dipole.albedo * (g(dipole.z[0]) + g(dipole.z[1]))
+}

@@ -1,0 +1,185 @@
+//! The GPU memory of a body.
+
+use crate::gpu::{self, UNIFORM_STRIDE};
+use crate::layout::{AtlasVertexLayout, Cluster, DeformLayout, GatherLayout, TexelLayout};
+use crate::stages::cluster::Tree;
+use crate::stages::scatter::SOURCES_PER_DISPATCH;
+use crate::Error;
+use glam::Vec3;
+use translume_mesh::normals::NormalAdjacency;
+use translume_mesh::{Atlas, Mesh};
+use wgpu::BufferUsages;
+
+/// Every buffer of a body, named as the shaders name them.
+pub(crate) struct Buffers {
+    pub deform_uniform: wgpu::Buffer,
+    pub rest: wgpu::Buffer,
+    pub deltas: wgpu::Buffer,
+    pub weights: wgpu::Buffer,
+    pub triangles: wgpu::Buffer,
+    pub adjacency: wgpu::Buffer,
+    pub positions: wgpu::Buffer,
+    pub normals: wgpu::Buffer,
+    pub gather_uniform: wgpu::Buffer,
+    pub texels: wgpu::Buffer,
+    pub texel_positions: wgpu::Buffer,
+    pub texel_normals: wgpu::Buffer,
+    pub irradiance: wgpu::Buffer,
+    pub cluster_uniforms: wgpu::Buffer,
+    pub clusters: wgpu::Buffer,
+    pub scatter_uniforms: wgpu::Buffer,
+    pub exitance: wgpu::Buffer,
+    pub pixels: wgpu::Buffer,
+    pub atlas_vertices: wgpu::Buffer,
+    pub atlas_indices: wgpu::Buffer,
+}
+
+/// Sizes of a body.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Extent {
+    pub vertices: u32,
+    pub triangles: u32,
+    pub targets: u32,
+    pub texels: u32,
+    pub atlas_size: u32,
+}
+
+impl Extent {
+    pub fn new(mesh: &Mesh, atlas: &Atlas) -> Self {
+        Self {
+            vertices: mesh.positions.len() as u32,
+            triangles: mesh.triangles.len() as u32,
+            targets: mesh.targets.len() as u32,
+            texels: atlas.texels.len() as u32,
+            atlas_size: atlas.size,
+        }
+    }
+
+    /// Whether the device can hold it.
+    pub fn check(&self, limits: &wgpu::Limits) -> Result<(), Error> {
+        let texture = u64::from(limits.max_texture_dimension_2d);
+        let binding = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
+        let clusters = u64::from(Tree::new(self.texels).clusters()) * size_of::<Cluster>() as u64;
+        let pixels = 4 * u64::from(self.atlas_size) * u64::from(self.atlas_size);
+        let deltas = 12 * u64::from(self.vertices) * u64::from(self.targets);
+        let needs = [
+            ("atlas", "max_texture_dimension_2d", u64::from(self.atlas_size), texture, SMALLER_ATLAS),
+            ("atlas", "max_storage_buffer_binding_size", pixels, binding, SMALLER_ATLAS),
+            ("texels", "max_storage_buffer_binding_size", 16 * u64::from(self.texels), binding, SMALLER_ATLAS),
+            ("clusters", "max_storage_buffer_binding_size", clusters, binding, SMALLER_ATLAS),
+            ("mesh", "max_storage_buffer_binding_size", 24 * u64::from(self.vertices), binding, SMALLER_MESH),
+            ("mesh", "max_storage_buffer_binding_size", 12 * u64::from(self.triangles), binding, SMALLER_MESH),
+            ("morph targets", "max_storage_buffer_binding_size", deltas, binding, "use fewer morph targets"),
+        ];
+        for (what, limit, required, actual, remedy) in needs {
+            if required > actual {
+                return Err(Error::Limit { what: what.to_owned(), limit, required, actual, remedy });
+            }
+        }
+        Ok(())
+    }
+}
+
+const SMALLER_ATLAS: &str = "use a smaller atlas, or create the device with higher limits";
+const SMALLER_MESH: &str = "use a smaller mesh, or create the device with higher limits";
+
+/// Whether mesh and atlas belong together and every index leads somewhere.
+pub(crate) fn validate(mesh: &Mesh, atlas: &Atlas) -> Result<(), Error> {
+    let fail = |problem: String, remedy| Err(Error::Body { mesh: mesh.name.clone(), problem, remedy });
+    const REPAIR: &str = "pass the mesh through `translume_mesh::repair` first";
+    const REBUILD: &str = "build the atlas from this very mesh";
+    let vertices = mesh.positions.len();
+    if mesh.triangles.is_empty() || atlas.texels.is_empty() {
+        return fail("no triangle or no texel, so nothing to light".to_owned(), REPAIR);
+    }
+    if mesh.normals.len() != vertices {
+        return fail(format!("{} normals for {vertices} vertices", mesh.normals.len()), REPAIR);
+    }
+    if let Some(vertex) = (0..vertices).find(|&v| !mesh.positions[v].iter().chain(&mesh.normals[v]).all(|x| x.is_finite())) {
+        return fail(format!("vertex {vertex} is not finite"), REPAIR);
+    }
+    if let Some(triangle) = mesh.triangles.iter().position(|t| t.iter().any(|&v| v as usize >= vertices)) {
+        return fail(format!("triangle {triangle} uses a vertex beyond the {vertices} there are"), REPAIR);
+    }
+    for (k, target) in mesh.targets.iter().enumerate() {
+        if target.position_deltas.len() != vertices || !target.position_deltas.iter().flatten().all(|x| x.is_finite()) {
+            return fail(format!("morph target {k} needs {vertices} finite deltas"), REPAIR);
+        }
+    }
+    if atlas.triangles.len() != mesh.triangles.len() || atlas.vertices.iter().any(|v| v.xref as usize >= vertices) {
+        return fail("the atlas was built from another mesh".to_owned(), REBUILD);
+    }
+    if atlas.triangles.iter().flatten().any(|&v| v as usize >= atlas.vertices.len()) {
+        return fail("the atlas uses vertices it does not have".to_owned(), REBUILD);
+    }
+    if atlas.pixels.len() != (atlas.size as usize).pow(2) {
+        return fail(format!("the atlas has {} pixels for {}²", atlas.pixels.len(), atlas.size), REBUILD);
+    }
+    if let Some(k) = atlas.texels.iter().position(|t| t.triangle as usize >= mesh.triangles.len() || !t.area.is_finite()) {
+        return fail(format!("texel {k} of the atlas stands on no triangle"), REBUILD);
+    }
+    Ok(())
+}
+
+impl Buffers {
+    pub fn new(device: &wgpu::Device, mesh: &Mesh, atlas: &Atlas, tree: &Tree) -> Self {
+        let storage = |label, content: &[u32]| gpu::buffer_with(device, label, BufferUsages::STORAGE, content);
+        let floats = |label, content: &[f32]| gpu::buffer_with(device, label, BufferUsages::STORAGE, content);
+        let vectors = |label, count: usize| gpu::buffer(device, label, 16 * count as u64);
+        let extent = Extent::new(mesh, atlas);
+
+        let rest: Vec<f32> = mesh.positions.iter().zip(&mesh.normals).flat_map(|(p, n)| p.iter().chain(n)).copied().collect();
+        let deltas: Vec<f32> = mesh.targets.iter().flat_map(|target| target.position_deltas.iter().flatten()).copied().collect();
+        let triangles: Vec<u32> = mesh.triangles.iter().flatten().copied().collect();
+        let adjacency = NormalAdjacency::build(mesh);
+        let adjacency: Vec<u32> = adjacency.offsets.iter().chain(&adjacency.triangles).copied().collect();
+        let atlas_vertices: Vec<_> = atlas.vertices.iter().map(|v| AtlasVertexLayout { xref: v.xref, uv: v.uv }).collect();
+        let atlas_indices: Vec<u32> = atlas.triangles.iter().flatten().copied().collect();
+        let dispatches = extent.texels.div_ceil(SOURCES_PER_DISPATCH).max(1);
+
+        let positions = device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("positions"),
+            size: 16 * u64::from(extent.vertices),
+            usage: BufferUsages::STORAGE | BufferUsages::VERTEX | BufferUsages::COPY_SRC,
+            mapped_at_creation: false,
+        });
+        Self {
+            deform_uniform: gpu::uniform_buffer(device, "deform", size_of::<DeformLayout>() as u64),
+            rest: floats("rest pose", &rest),
+            deltas: floats("morph deltas", &deltas),
+            weights: gpu::buffer(device, "morph weights", 4 * u64::from(extent.targets)),
+            triangles: gpu::buffer_with(device, "triangles", BufferUsages::STORAGE | BufferUsages::INDEX, &triangles),
+            adjacency: storage("adjacency", &adjacency),
+            positions,
+            normals: vectors("normals", mesh.positions.len()),
+            gather_uniform: gpu::uniform_buffer(device, "gather", size_of::<GatherLayout>() as u64),
+            texels: gpu::buffer_with(device, "texels", BufferUsages::STORAGE, &texel_layouts(mesh, atlas)),
+            texel_positions: vectors("texel positions", atlas.texels.len()),
+            texel_normals: vectors("texel normals", atlas.texels.len()),
+            irradiance: vectors("irradiance", atlas.texels.len()),
+            cluster_uniforms: gpu::buffer_with(device, "cluster levels", BufferUsages::UNIFORM, &tree.uniforms()),
+            clusters: gpu::buffer(device, "clusters", u64::from(tree.clusters()) * size_of::<Cluster>() as u64),
+            scatter_uniforms: gpu::uniform_buffer(device, "scatter", UNIFORM_STRIDE * u64::from(dispatches)),
+            exitance: vectors("exitance", atlas.texels.len()),
+            pixels: storage("pixels", &atlas.pixels),
+            atlas_vertices: gpu::buffer_with(device, "atlas vertices", BufferUsages::VERTEX, &atlas_vertices),
+            atlas_indices: gpu::buffer_with(device, "atlas indices", BufferUsages::INDEX, &atlas_indices),
+        }
+    }
+}
+
+fn texel_layouts(mesh: &Mesh, atlas: &Atlas) -> Vec<TexelLayout> {
+    let area = |triangle: u32| {
+        let [a, b, c] = mesh.corners(triangle as usize).map(Vec3::from);
+        0.5 * (b - a).cross(c - a).length()
+    };
+    let texels = atlas.texels.iter();
+    texels
+        .map(|texel| TexelLayout {
+            triangle: texel.triangle,
+            barycentric_1: texel.barycentric[0],
+            barycentric_2: texel.barycentric[1],
+            area_ratio: if texel.area > 0.0 { texel.area / area(texel.triangle).max(f32::MIN_POSITIVE) } else { 0.0 },
+        })
+        .collect()
+}

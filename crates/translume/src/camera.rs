@@ -1,0 +1,61 @@
+//! Where the picture is taken from.
+
+use glam::Vec3;
+use glam::camera::rh::{proj, view};
+
+/// A camera, in the host's world units. Clip space is wgpu's: x right, y up, depth 0..1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Camera {
+    /// World space to clip space, column-major.
+    pub view_projection: [[f32; 4]; 4],
+    /// The eye's position.
+    pub eye: [f32; 3],
+}
+
+/// A camera in words.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LookAt {
+    /// The eye's position.
+    pub eye: [f32; 3],
+    /// A point in the middle of the picture.
+    pub target: [f32; 3],
+    /// Which way is up; not parallel to the line of sight.
+    pub up: [f32; 3],
+    /// Full horizontal field of view, radians.
+    pub horizontal_fov: f32,
+    /// Width of the picture over its height.
+    pub aspect: f32,
+    /// Distance to the near plane.
+    pub near: f32,
+    /// Distance to the far plane.
+    pub far: f32,
+}
+
+impl From<LookAt> for Camera {
+    fn from(words: LookAt) -> Self {
+        let view = view::look_at_mat4(words.eye.into(), words.target.into(), Vec3::from(words.up));
+        let vertical = 2.0 * ((0.5 * words.horizontal_fov).tan() / words.aspect).atan();
+        let projection = proj::directx::perspective(vertical, words.aspect, words.near, words.far);
+        Self { view_projection: (projection * view).to_cols_array_2d(), eye: words.eye }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_field_of_view_is_horizontal() {
+        let camera = Camera::from(LookAt {
+            eye: [0.0, 0.0, 10.0],
+            target: [0.0; 3],
+            up: [0.0, 1.0, 0.0],
+            horizontal_fov: std::f32::consts::FRAC_PI_2,
+            aspect: 2.0,
+            near: 0.1,
+            far: 100.0,
+        });
+        let ndc = glam::Mat4::from_cols_array_2d(&camera.view_projection).project_point3(Vec3::new(10.0, 5.0, 0.0));
+        assert!((ndc.x - 1.0).abs() < 1e-5 && (ndc.y - 1.0).abs() < 1e-5, "{ndc}");
+    }
+}

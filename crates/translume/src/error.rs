@@ -1,0 +1,68 @@
+//! What can go wrong, in words.
+
+/// Everything translume refuses, with the element and the remedy.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// The device was created with a limit below what is needed.
+    #[error("{what} needs {limit} ≥ {required}, but the device has {actual}; {remedy}")]
+    Limit {
+        /// What needs it.
+        what: String,
+        /// The limit's name in [`wgpu::Limits`].
+        limit: &'static str,
+        /// The least value that would do.
+        required: u64,
+        /// The device's value.
+        actual: u64,
+        /// What to change.
+        remedy: &'static str,
+    },
+    /// A medium's coefficient cannot be.
+    #[error("medium: {field} is {value}, but must be {range}")]
+    Medium {
+        /// Which coefficient and channel.
+        field: &'static str,
+        /// Its value.
+        value: f32,
+        /// What it may be.
+        range: &'static str,
+    },
+    /// No preset has this name.
+    #[error("no medium is called \"{name}\"; known are {known}")]
+    UnknownMedium {
+        /// The name asked for.
+        name: String,
+        /// All names.
+        known: String,
+    },
+    /// No profile has this name.
+    #[error("no profile is called \"{name}\"; known are {known}")]
+    UnknownProfile {
+        /// The name asked for.
+        name: String,
+        /// All names.
+        known: String,
+    },
+    /// Mesh and atlas do not belong together, or hold numbers that cannot be.
+    #[error("{mesh}: {problem}; {remedy}")]
+    Body {
+        /// The mesh's name.
+        mesh: String,
+        /// What is wrong, naming the element.
+        problem: String,
+        /// What to do about it.
+        remedy: &'static str,
+    },
+    /// An input of a frame cannot be.
+    #[error("frame: {problem}; {remedy}")]
+    Frame {
+        /// What is wrong, naming the element.
+        problem: String,
+        /// What to do about it.
+        remedy: &'static str,
+    },
+    /// Reading back from the GPU failed.
+    #[error("reading back from the GPU failed: {0}; the device may be lost")]
+    ReadBack(String),
+}

@@ -1,0 +1,246 @@
+//! What changes from frame to frame, and its translation into uniforms.
+
+use crate::layout::{
+    AmbientLayout, GatherLayout, LightLayout, MAX_AMBIENTS, MAX_LIGHTS, MAX_VIEWS, NO_SHADOW, ShadowViewLayout,
+};
+use crate::stages::shadow::{self, View};
+use crate::{Error, Light, light};
+use glam::{Mat4, Vec3};
+
+/// The inputs of one frame.
+#[derive(Clone, Copy, Debug)]
+pub struct Frame<'a> {
+    /// Model space to world space, column-major.
+    pub model: [[f32; 4]; 4],
+    /// The pose.
+    pub deformation: Deformation<'a>,
+    /// The light.
+    pub lighting: Lighting<'a>,
+}
+
+/// The pose of a body.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub enum Deformation<'a> {
+    /// As the mesh was loaded.
+    #[default]
+    Rest,
+    /// One weight per morph target of the mesh. Any finite number; 0 is the rest pose, 1 the target.
+    Morph(&'a [f32]),
+}
+
+/// Where light comes from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Lighting<'a> {
+    /// Any mix of lights; up to 64 directional and point lights and 8 ambient ones.
+    Lights(&'a [Light]),
+}
+
+impl Default for Frame<'_> {
+    /// The rest pose at the origin, in the dark.
+    fn default() -> Self {
+        Self {
+            model: Mat4::IDENTITY.to_cols_array_2d(),
+            deformation: Deformation::Rest,
+            lighting: Lighting::Lights(&[]),
+        }
+    }
+}
+
+/// Axis-aligned boxes of a mesh at rest and at each morph target's full weight, model units.
+#[derive(Clone, Debug)]
+pub(crate) struct PoseBounds {
+    rest: (Vec3, Vec3),
+    targets: Vec<(Vec3, Vec3)>,
+}
+
+impl PoseBounds {
+    pub fn new(mesh: &translume_mesh::Mesh) -> Self {
+        let around = |points: &mut dyn Iterator<Item = Vec3>| {
+            points.fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)))
+        };
+        let rest = around(&mut mesh.positions.iter().copied().map(Vec3::from));
+        let targets = mesh
+            .targets
+            .iter()
+            .map(|target| {
+                let moved = mesh.positions.iter().zip(&target.position_deltas);
+                around(&mut moved.map(|(p, d)| Vec3::from(*p) + Vec3::from(*d)))
+            })
+            .collect();
+        Self { rest, targets }
+    }
+
+    /// Corners of a box around the posed mesh. A pose is (1 − Σw)·rest + Σ w·target, so the same sum of boxes holds it.
+    pub fn corners(&self, weights: &[f32], model: Mat4) -> [Vec3; 8] {
+        let mut low = Vec3::ZERO;
+        let mut high = Vec3::ZERO;
+        let parts = std::iter::once((1.0 - weights.iter().sum::<f32>(), self.rest))
+            .chain(weights.iter().copied().zip(self.targets.iter().copied()));
+        for (weight, (a, b)) in parts {
+            low += (a * weight).min(b * weight);
+            high += (a * weight).max(b * weight);
+        }
+        std::array::from_fn(|k| {
+            let pick = Vec3::new((k & 1) as f32, (k >> 1 & 1) as f32, (k >> 2) as f32);
+            model.transform_point3(low + (high - low) * pick)
+        })
+    }
+}
+
+pub(crate) fn diagonal(corners: &[Vec3; 8]) -> f32 {
+    corners[0].distance(corners[7])
+}
+
+/// Checks what can be checked without the body.
+pub(crate) fn validate_lights(lights: &[Light]) -> Result<(), Error> {
+    for (index, light) in lights.iter().enumerate() {
+        light.validate(index)?;
+    }
+    let ambients = lights.iter().filter(|light| matches!(light, Light::Ambient(_))).count();
+    let limits = [(lights.len() - ambients, MAX_LIGHTS, "directional and point"), (ambients, MAX_AMBIENTS, "ambient")];
+    for (count, limit, kind) in limits {
+        if count > limit {
+            return Err(Error::Frame {
+                problem: format!("{count} {kind} lights, but at most {limit} fit"),
+                remedy: "merge or drop lights",
+            });
+        }
+    }
+    Ok(())
+}
+
+/// Checks the model matrix.
+pub(crate) fn validate_model(model: Mat4) -> Result<(), Error> {
+    if model.is_finite() && model.determinant() != 0.0 {
+        return Ok(());
+    }
+    Err(Error::Frame {
+        problem: format!("model matrix {model} cannot be inverted"),
+        remedy: "give a finite matrix that keeps three dimensions",
+    })
+}
+
+/// What the gather needs of a body beside the lights.
+pub(crate) struct GatherBody<'a> {
+    pub texels: u32,
+    pub flat_normals: bool,
+    pub eta: f32,
+    pub winding: f32,
+    pub mm_per_unit: f32,
+    pub corners: &'a [Vec3; 8],
+    pub shadow_resolution: u32,
+}
+
+/// Lights and their depth maps' views, as WGSL reads them.
+pub(crate) fn gather_layout(lights: &[Light], body: &GatherBody<'_>) -> Result<(Box<GatherLayout>, Vec<View>), Error> {
+    let mut layout: Box<GatherLayout> = bytemuck::zeroed_box();
+    layout.texel_count = body.texels;
+    layout.flat_normals = u32::from(body.flat_normals);
+    layout.eta = body.eta;
+    layout.winding = body.winding;
+    let mut views = Vec::new();
+    for light in lights {
+        if let Light::Ambient(ambient) = light {
+            layout.ambients[layout.ambient_count as usize] = ambient_layout(ambient, body.eta);
+            layout.ambient_count += 1;
+            continue;
+        }
+        let own = shadow::views(light, body.mm_per_unit, body.corners, body.shadow_resolution);
+        let first = if own.is_empty() { NO_SHADOW } else { views.len() as u32 };
+        layout.lights[layout.light_count as usize] = light_layout(light, body.mm_per_unit, first, own.len() as u32);
+        layout.light_count += 1;
+        views.extend(own);
+    }
+    if views.len() > MAX_VIEWS {
+        return Err(Error::Frame {
+            problem: format!("{} depth maps, but at most {MAX_VIEWS} fit", views.len()),
+            remedy: "a point light near the body takes six: switch some shadows off",
+        });
+    }
+    for (slot, view) in layout.views.iter_mut().zip(&views) {
+        slot.matrix = view.matrix.to_cols_array_2d();
+        slot.texel = view.texel;
+        slot.perspective = f32::from(u8::from(view.perspective));
+    }
+    Ok((layout, views))
+}
+
+fn light_layout(light: &Light, scale: f32, first_view: u32, view_count: u32) -> LightLayout {
+    let (kind, vector, colour, region) = match light {
+        Light::Directional(light) => {
+            (0, Vec3::from(light.to_light).normalize().to_array(), light.irradiance, light.region)
+        }
+        // Intensity over distance² in world units is intensity·scale² over distance² in millimetres.
+        Light::Point(light) => {
+            (1, light.position.map(|x| x * scale), light.intensity.map(|i| i * scale * scale), light.region)
+        }
+        Light::Ambient(light) => (2, light.axis, light.radiance, None),
+    };
+    // Far corners stay finite, so that infinity minus infinity never arises.
+    let bound = |x: f32| (x * scale).clamp(-1e30, 1e30);
+    LightLayout {
+        vector,
+        kind,
+        colour,
+        first_view,
+        region_low: region.map_or([-1e30; 3], |region| region.low.map(bound)),
+        view_count,
+        region_high: region.map_or([1e30; 3], |region| region.high.map(bound)),
+        padding: 0,
+    }
+}
+
+fn ambient_layout(ambient: &crate::AmbientLight, eta: f32) -> AmbientLayout {
+    let values: [f32; 33] = light::ambient_table(ambient.half_angle, eta);
+    let mut table = [[0.0; 4]; 9];
+    for (k, value) in values.into_iter().enumerate() {
+        table[k / 4][k % 4] = value;
+    }
+    let axis = Vec3::from(ambient.axis).normalize_or(Vec3::Y).to_array();
+    AmbientLayout { radiance: ambient.radiance, padding: 0, axis, padding1: 0, table }
+}
+
+// `ShadowViewLayout` is written field by field above; its size is part of the uniform's contract with WGSL.
+const _: () = assert!(size_of::<ShadowViewLayout>() == 80);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{AmbientLight, DirectionalLight};
+    use translume_mesh::{Mesh, MorphTarget};
+
+    fn mesh() -> Mesh {
+        Mesh {
+            name: "pair".to_owned(),
+            positions: vec![[0.0; 3], [1.0, 2.0, 3.0]],
+            normals: vec![[0.0, 1.0, 0.0]; 2],
+            triangles: vec![],
+            targets: vec![MorphTarget { name: String::new(), position_deltas: vec![[5.0, 0.0, 0.0], [-4.0, 0.0, 0.0]] }],
+        }
+    }
+
+    #[test]
+    fn bounds_hold_every_pose() {
+        let bounds = PoseBounds::new(&mesh());
+        for weight in [-1.0_f32, 0.0, 0.3, 1.0, 2.5] {
+            let corners = bounds.corners(&[weight], Mat4::IDENTITY);
+            let (low, high) = (corners[0], corners[7]);
+            for (p, d) in mesh().positions.iter().zip(&mesh().targets[0].position_deltas) {
+                let posed = Vec3::from(*p) + weight * Vec3::from(*d);
+                assert!(posed.cmpge(low - 1e-5).all() && posed.cmple(high + 1e-5).all(), "{weight}: {posed}");
+            }
+        }
+        assert_eq!(bounds.corners(&[0.0], Mat4::IDENTITY)[7], Vec3::new(1.0, 2.0, 3.0), "the rest box is tight");
+    }
+
+    #[test]
+    fn too_many_lights_are_counted() {
+        let sun = Light::Directional(DirectionalLight::default());
+        assert!(validate_lights(&[sun; MAX_LIGHTS]).is_ok());
+        assert!(validate_lights(&[sun; MAX_LIGHTS + 1]).unwrap_err().to_string().contains("65 directional"));
+        let sky = Light::Ambient(AmbientLight::default());
+        assert!(validate_lights(&[sky; MAX_AMBIENTS + 1]).is_err());
+    }
+}

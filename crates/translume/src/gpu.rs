@@ -1,0 +1,137 @@
+//! Short words for long wgpu descriptors.
+
+use std::borrow::Cow;
+use wgpu::BindingType;
+
+pub(crate) const fn storage(read_only: bool) -> BindingType {
+    BindingType::Buffer {
+        ty: wgpu::BufferBindingType::Storage { read_only },
+        has_dynamic_offset: false,
+        min_binding_size: None,
+    }
+}
+
+pub(crate) const READ: BindingType = storage(true);
+pub(crate) const WRITE: BindingType = storage(false);
+pub(crate) const UNIFORM: BindingType = uniform(false);
+pub(crate) const UNIFORM_ARRAY: BindingType = uniform(true);
+
+const fn uniform(has_dynamic_offset: bool) -> BindingType {
+    BindingType::Buffer { ty: wgpu::BufferBindingType::Uniform, has_dynamic_offset, min_binding_size: None }
+}
+
+/// An unfilterable float texture: readable on every device.
+pub(crate) const FLOAT_TEXTURE: BindingType = BindingType::Texture {
+    sample_type: wgpu::TextureSampleType::Float { filterable: false },
+    view_dimension: wgpu::TextureViewDimension::D2,
+    multisampled: false,
+};
+
+/// Uniforms picked by dynamic offset stand this far apart (WebGPU's default alignment).
+pub(crate) const UNIFORM_STRIDE: u64 = 256;
+
+/// Bindings 0, 1, 2 … of group 0.
+pub(crate) fn layout(
+    device: &wgpu::Device,
+    label: &str,
+    visibility: wgpu::ShaderStages,
+    types: &[BindingType],
+) -> wgpu::BindGroupLayout {
+    let entries: Vec<_> = (0..)
+        .zip(types)
+        .map(|(binding, ty)| wgpu::BindGroupLayoutEntry { binding, visibility, ty: *ty, count: None })
+        .collect();
+    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries: &entries })
+}
+
+/// Resources for bindings 0, 1, 2 … of group 0.
+pub(crate) fn bind(
+    device: &wgpu::Device,
+    label: &str,
+    layout: &wgpu::BindGroupLayout,
+    resources: &[wgpu::BindingResource<'_>],
+) -> wgpu::BindGroup {
+    let entries: Vec<_> = (0..)
+        .zip(resources)
+        .map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource: resource.clone() })
+        .collect();
+    device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some(label), layout, entries: &entries })
+}
+
+/// The first `size` bytes of a buffer of uniforms, moved by dynamic offset.
+pub(crate) fn uniform_slot<T>(buffer: &wgpu::Buffer) -> wgpu::BindingResource<'_> {
+    let size = wgpu::BufferSize::new(size_of::<T>() as u64);
+    wgpu::BindingResource::Buffer(wgpu::BufferBinding { buffer, offset: 0, size })
+}
+
+pub(crate) fn module(device: &wgpu::Device, shader: translume_shaders::Shader) -> wgpu::ShaderModule {
+    device.create_shader_module(wgpu::ShaderModuleDescriptor {
+        label: Some(shader.name),
+        source: wgpu::ShaderSource::Wgsl(Cow::Borrowed(shader.source)),
+    })
+}
+
+pub(crate) fn pipeline_layout(
+    device: &wgpu::Device,
+    label: &str,
+    group: &wgpu::BindGroupLayout,
+) -> wgpu::PipelineLayout {
+    device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        label: Some(label),
+        bind_group_layouts: &[Some(group)],
+        immediate_size: 0,
+    })
+}
+
+pub(crate) fn compute_pipeline(
+    device: &wgpu::Device,
+    layout: &wgpu::BindGroupLayout,
+    module: &wgpu::ShaderModule,
+    entry_point: &str,
+) -> wgpu::ComputePipeline {
+    device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+        label: Some(entry_point),
+        layout: Some(&pipeline_layout(device, entry_point, layout)),
+        module,
+        entry_point: Some(entry_point),
+        compilation_options: wgpu::PipelineCompilationOptions::default(),
+        cache: None,
+    })
+}
+
+/// Threads of a workgroup; `WORKGROUP` in `shared/dispatch.wgsl`.
+const WORKGROUP: u32 = 64;
+/// WebGPU's default limit of workgroups along one axis.
+const WORKGROUPS_PER_ROW: u32 = 65_535;
+
+/// One invocation per item, in rows where one row is too long.
+pub(crate) fn dispatch(pass: &mut wgpu::ComputePass<'_>, items: u32) {
+    let workgroups = items.div_ceil(WORKGROUP);
+    let rows = workgroups.div_ceil(WORKGROUPS_PER_ROW).max(1);
+    pass.dispatch_workgroups(workgroups.div_ceil(rows), rows, 1);
+}
+
+/// A buffer with this content. An empty one still gets room for a few bytes, because bindings may not be empty.
+pub(crate) fn buffer_with<T: bytemuck::NoUninit>(
+    device: &wgpu::Device,
+    label: &str,
+    usage: wgpu::BufferUsages,
+    content: &[T],
+) -> wgpu::Buffer {
+    use wgpu::util::DeviceExt as _;
+    let bytes = bytemuck::cast_slice(content);
+    let contents = if bytes.is_empty() { &[0_u8; 16][..] } else { bytes };
+    device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: Some(label), contents, usage })
+}
+
+/// A zeroed buffer that shaders may write and hosts may copy from.
+pub(crate) fn buffer(device: &wgpu::Device, label: &str, size: u64) -> wgpu::Buffer {
+    let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST;
+    device.create_buffer(&wgpu::BufferDescriptor { label: Some(label), size: size.max(16), usage, mapped_at_creation: false })
+}
+
+/// A buffer for uniforms.
+pub(crate) fn uniform_buffer(device: &wgpu::Device, label: &str, size: u64) -> wgpu::Buffer {
+    let usage = wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST;
+    device.create_buffer(&wgpu::BufferDescriptor { label: Some(label), size, usage, mapped_at_creation: false })
+}

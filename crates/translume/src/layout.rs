@@ -1,0 +1,217 @@
+//! What WGSL reads, byte for byte. A test holds every struct here against naga's own offsets.
+
+use crate::kernel_table::KernelTableLayout;
+use bytemuck::{Pod, Zeroable};
+
+/// Most lights of one frame that are not ambient.
+pub(crate) const MAX_LIGHTS: usize = 64;
+/// Most depth maps of one frame; a point light near its body takes six.
+pub(crate) const MAX_VIEWS: usize = 64;
+/// Most ambient lights of one frame.
+pub(crate) const MAX_AMBIENTS: usize = 8;
+/// Marks a light without a depth map.
+pub(crate) const NO_SHADOW: u32 = u32::MAX;
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub(crate) struct DeformLayout {
+    pub model: [[f32; 4]; 4],
+    pub normal: [[f32; 4]; 4],
+    pub vertex_count: u32,
+    pub target_count: u32,
+    pub winding: f32,
+    pub padding: u32,
+}
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub(crate) struct LightLayout {
+    pub vector: [f32; 3],
+    pub kind: u32,
+    pub colour: [f32; 3],
+    pub first_view: u32,
+    pub region_low: [f32; 3],
+    pub view_count: u32,
+    pub region_high: [f32; 3],
+    pub padding: u32,
+}
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub(crate) struct AmbientLayout {
+    pub radiance: [f32; 3],
+    pub padding: u32,
+    pub axis: [f32; 3],
+    pub padding1: u32,
+    pub table: [[f32; 4]; 9],
+}
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub(crate) struct ShadowViewLayout {
+    pub matrix: [[f32; 4]; 4],
+    pub texel: f32,
+    pub perspective: f32,
+    pub padding0: f32,
+    pub padding1: f32,
+}
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub(crate) struct GatherLayout {
+    pub texel_count: u32,
+    pub light_count: u32,
+    pub ambient_count: u32,
+    pub flat_normals: u32,
+    pub eta: f32,
+    pub winding: f32,
+    pub padding0: u32,
+    pub padding1: u32,
+    pub lights: [LightLayout; MAX_LIGHTS],
+    pub views: [ShadowViewLayout; MAX_VIEWS],
+    pub ambients: [AmbientLayout; MAX_AMBIENTS],
+}
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub(crate) struct TexelLayout {
+    pub triangle: u32,
+    pub barycentric_1: f32,
+    pub barycentric_2: f32,
+    pub area_ratio: f32,
+}
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub(crate) struct LevelLayout {
+    pub child_count: u32,
+    pub node_count: u32,
+    pub child_offset: u32,
+    pub node_offset: u32,
+}
+
+/// A group of texels seen as one source. Lengths in mm. Mirrors `Cluster` in `shared/cluster.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub struct Cluster {
+    /// Power-weighted centroid, mm.
+    pub centroid: [f32; 3],
+    /// Power-weighted rms radius, the members' own discs included, mm.
+    pub spread: f32,
+    /// Sum of irradiance times area, RGB.
+    pub power: [f32; 3],
+    /// No member's centre is further from the centroid, mm.
+    pub radius: f32,
+    /// Power-weighted mean normal, unit length, or zero where it cancels.
+    pub normal: [f32; 3],
+    /// Sum of live areas, mm².
+    pub area: f32,
+}
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub(crate) struct ScatterLayout {
+    pub table: KernelTableLayout,
+    pub texel_count: u32,
+    pub first_source: u32,
+    pub source_count: u32,
+    pub top_level: u32,
+    pub top_count: u32,
+    pub theta_squared: f32,
+    pub z_r_squared: f32,
+    pub padding: u32,
+    pub offsets: [[u32; 4]; 4],
+}
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub(crate) struct CompositeLayout {
+    pub view_projection: [[f32; 4]; 4],
+    pub eye: [f32; 3],
+    pub eta: f32,
+    pub exit_scale: f32,
+    pub padding: [u32; 3],
+}
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub(crate) struct AtlasVertexLayout {
+    pub xref: u32,
+    pub uv: [f32; 2],
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::mem::offset_of;
+
+    /// Members of a WGSL struct with their offsets, and its size rounded up to its alignment.
+    fn naga_layout(source: &str, name: &str) -> (Vec<(String, u32)>, u32) {
+        let module = naga::front::wgsl::parse_str(source).unwrap();
+        let (_, ty) = module.types.iter().find(|(_, ty)| ty.name.as_deref() == Some(name)).unwrap();
+        let naga::TypeInner::Struct { members, span } = &ty.inner else { panic!("{name} is no struct") };
+        (members.iter().map(|m| (m.name.clone().unwrap_or_default(), m.offset)).collect(), *span)
+    }
+
+    /// Compares offsets by name and the total size; says what differs.
+    fn compare(source: &str, name: &str, rust: &[(&str, usize)], size: usize) -> Result<(), String> {
+        let (members, span) = naga_layout(source, name);
+        for (field, offset) in rust {
+            match members.iter().find(|(member, _)| member == field) {
+                Some((_, there)) if *there as usize == *offset => {}
+                other => return Err(format!("{name}.{field}: Rust has offset {offset}, WGSL {other:?}")),
+            }
+        }
+        if span as usize != size || members.len() < rust.len() {
+            return Err(format!("{name}: Rust has {size} bytes, WGSL {span}"));
+        }
+        Ok(())
+    }
+
+    macro_rules! check {
+        ($shader:ident, $wgsl:literal, $rust:ty, [$($field:ident),+]) => {
+            compare(
+                translume_shaders::$shader.source,
+                $wgsl,
+                &[$((stringify!($field), offset_of!($rust, $field))),+],
+                size_of::<$rust>(),
+            )
+            .unwrap();
+        };
+    }
+
+    #[test]
+    fn rust_and_wgsl_agree() {
+        check!(DEFORM, "Deform", DeformLayout, [model, normal, vertex_count, target_count, winding, padding]);
+        check!(GATHER, "Light", LightLayout, [vector, kind, colour, first_view, region_low, view_count, region_high, padding]);
+        check!(GATHER, "Ambient", AmbientLayout, [radiance, padding, axis, padding1, table]);
+        check!(GATHER, "ShadowView", ShadowViewLayout, [matrix, texel, perspective, padding0, padding1]);
+        check!(
+            GATHER,
+            "Gather",
+            GatherLayout,
+            [texel_count, light_count, ambient_count, flat_normals, eta, winding, padding0, padding1, lights, views, ambients]
+        );
+        check!(GATHER, "Texel", TexelLayout, [triangle, barycentric_1, barycentric_2, area_ratio]);
+        check!(CLUSTER, "Level", LevelLayout, [child_count, node_count, child_offset, node_offset]);
+        check!(CLUSTER, "Cluster", Cluster, [centroid, spread, power, radius, normal, area]);
+        check!(SCATTER, "KernelTable", KernelTableLayout, [least_r2, least_s2, columns, rows]);
+        check!(
+            SCATTER,
+            "Scatter",
+            ScatterLayout,
+            [table, texel_count, first_source, source_count, top_level, top_count, theta_squared, z_r_squared, padding, offsets]
+        );
+        let (members, span) = naga_layout(translume_shaders::COMPOSITE.source, "Composite");
+        assert_eq!(members[1], ("eye".to_owned(), offset_of!(CompositeLayout, eye) as u32));
+        assert_eq!(members[3], ("exit_scale".to_owned(), offset_of!(CompositeLayout, exit_scale) as u32));
+        assert_eq!(span as usize, size_of::<CompositeLayout>());
+    }
+
+    #[test]
+    fn a_shifted_field_is_noticed() {
+        let wgsl = translume_shaders::CLUSTER.source;
+        assert!(compare(wgsl, "Cluster", &[("power", offset_of!(Cluster, power) + 4)], size_of::<Cluster>()).is_err());
+        assert!(compare(wgsl, "Cluster", &[("power", offset_of!(Cluster, power))], size_of::<Cluster>() + 16).is_err());
+    }
+}

@@ -1,0 +1,171 @@
+//! Lights, in the host's world units.
+
+use crate::{Error, fresnel};
+
+/// A source of light. Positions are in world units; colours are linear RGB.
+///
+/// Irradiance, intensity and radiance share one unit of power and the host's unit of length, so what comes out has the unit that
+/// went in: a radiance of 1 all around a white body returns 1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Light {
+    /// Parallel light, such as the sun.
+    Directional(DirectionalLight),
+    /// Light from a point, falling off with the square of the distance.
+    Point(PointLight),
+    /// The same radiance from every direction of a cone, or of the whole sky. Nothing occludes it.
+    Ambient(AmbientLight),
+}
+
+/// Parallel light.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DirectionalLight {
+    /// From the body towards the light; any length but zero.
+    pub to_light: [f32; 3],
+    /// Irradiance on a surface that faces the light, RGB. π makes a white surface show radiance 1.
+    pub irradiance: [f32; 3],
+    /// Whether the body shadows itself.
+    pub shadow: bool,
+    /// Light enters only inside this box; `None` for everywhere.
+    pub region: Option<Region>,
+}
+
+/// Light from a point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PointLight {
+    /// Position, world units. It may lie inside a body.
+    pub position: [f32; 3],
+    /// Radiant intensity, RGB: irradiance = intensity · cosine / distance², distance in world units.
+    pub intensity: [f32; 3],
+    /// Whether the body shadows itself.
+    pub shadow: bool,
+    /// Light enters only inside this box; `None` for everywhere.
+    pub region: Option<Region>,
+}
+
+/// Uniform light from a cone of the sky.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AmbientLight {
+    /// Radiance inside the cone, RGB.
+    pub radiance: [f32; 3],
+    /// Middle of the cone, towards the sky; any length but zero.
+    pub axis: [f32; 3],
+    /// Half angle of the cone, radians, 0..π; π is the whole sky.
+    pub half_angle: f32,
+}
+
+/// An axis-aligned box, world units.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Region {
+    /// Least corner.
+    pub low: [f32; 3],
+    /// Greatest corner.
+    pub high: [f32; 3],
+}
+
+impl Default for DirectionalLight {
+    /// A white light from above that shows radiance 1 on white.
+    fn default() -> Self {
+        Self { to_light: [0.0, 1.0, 0.0], irradiance: [std::f32::consts::PI; 3], shadow: true, region: None }
+    }
+}
+
+impl Default for PointLight {
+    fn default() -> Self {
+        Self { position: [0.0; 3], intensity: [1.0; 3], shadow: true, region: None }
+    }
+}
+
+impl Default for AmbientLight {
+    /// The whole sky at radiance 1.
+    fn default() -> Self {
+        Self { radiance: [1.0; 3], axis: [0.0, 1.0, 0.0], half_angle: std::f32::consts::PI }
+    }
+}
+
+impl Light {
+    /// Checks every number. `index` names the light in messages.
+    pub(crate) fn validate(&self, index: usize) -> Result<(), Error> {
+        let fail = |problem: String, remedy| Err(Error::Frame { problem: format!("light {index} {problem}"), remedy });
+        let (colour, vectors, direction) = match self {
+            Self::Directional(light) => (light.irradiance, [light.to_light; 2], Some(light.to_light)),
+            Self::Point(light) => (light.intensity, [light.position; 2], None),
+            Self::Ambient(light) => (light.radiance, [light.axis, [light.half_angle; 3]], Some(light.axis)),
+        };
+        if colour.iter().any(|c| !(0.0..=f32::MAX).contains(c)) {
+            return fail(format!("has colour {colour:?}"), "colours are finite and not negative");
+        }
+        if vectors.iter().flatten().any(|x| !x.is_finite()) {
+            return fail(format!("has a coordinate or angle that is not finite: {vectors:?}"), "give finite numbers");
+        }
+        if direction.is_some_and(|d| d.iter().map(|x| x * x).sum::<f32>() < 1e-20) {
+            return fail("has no direction".to_owned(), "give a vector that is not zero");
+        }
+        Ok(())
+    }
+}
+
+/// Irradiance inside the surface from a cone of unit radiance, ∫ F_t·cos dω over cone ∩ hemisphere, as a table over the cosine
+/// between the surface's normal and the cone's axis from −1 to 1.
+pub(crate) fn ambient_table<const N: usize>(half_angle: f32, eta: f32) -> [f32; N] {
+    let (half_angle, eta) = (f64::from(half_angle).clamp(0.0, std::f64::consts::PI), f64::from(eta));
+    if half_angle >= std::f64::consts::PI {
+        return [(std::f64::consts::PI * fresnel::hemispherical_transmittance(eta)) as f32; N];
+    }
+    std::array::from_fn(|k| cone_irradiance(2.0 * k as f64 / (N - 1) as f64 - 1.0, half_angle, eta) as f32)
+}
+
+/// Rings around the normal: on the ring at angle θ the cone covers an arc known in closed form. Only rings the cone reaches count.
+fn cone_irradiance(cosine: f64, half_angle: f64, eta: f64) -> f64 {
+    const RINGS: usize = 512;
+    let sine = (1.0 - cosine * cosine).max(0.0).sqrt();
+    let tilt = cosine.clamp(-1.0, 1.0).acos();
+    let first = (tilt - half_angle).max(0.0);
+    let last = (tilt + half_angle).min(std::f64::consts::FRAC_PI_2);
+    let step = (last - first).max(0.0) / RINGS as f64;
+    (0..RINGS)
+        .map(|k| {
+            let (ring_sin, ring_cos) = (first + (k as f64 + 0.5) * step).sin_cos();
+            let edge = (half_angle.cos() - ring_cos * cosine) / (ring_sin * sine).max(1e-12);
+            let arc = 2.0 * edge.clamp(-1.0, 1.0).acos();
+            fresnel::transmittance(eta, ring_cos) * ring_cos * ring_sin * arc * step
+        })
+        .sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::{FRAC_PI_2, PI};
+
+    #[test]
+    fn half_a_sky_has_a_closed_form() {
+        // A hemisphere of sky tilted by γ gives π(1 + cos γ)/2 at eta = 1. 0.1 %: 512 rings against a kink.
+        for cosine in [-1.0, -0.3, 0.0, 0.5, 1.0] {
+            let expected = PI * (1.0 + cosine) / 2.0;
+            assert!((cone_irradiance(cosine, FRAC_PI_2, 1.0) - expected).abs() < 1e-3 * PI, "{cosine}");
+        }
+    }
+
+    #[test]
+    fn a_narrow_cone_is_a_directional_light() {
+        let half_angle: f64 = 0.1;
+        let solid_angle = 2.0 * PI * (1.0 - half_angle.cos());
+        for (cosine, eta) in [(1.0, 1.0), (0.6, 1.0), (0.6, 1.5)] {
+            let expected = solid_angle * cosine * fresnel::transmittance(eta, cosine);
+            let found = cone_irradiance(cosine, half_angle, eta);
+            assert!((found / expected - 1.0).abs() < 0.02, "{cosine} {eta}: {found} {expected}");
+        }
+    }
+
+    #[test]
+    fn impossible_lights_are_named() {
+        let dark = Light::Directional(DirectionalLight { to_light: [0.0; 3], ..Default::default() });
+        assert!(dark.validate(3).unwrap_err().to_string().contains("light 3 has no direction"));
+        let nan = Light::Point(PointLight { position: [0.0, f32::NAN, 0.0], ..Default::default() });
+        assert!(nan.validate(0).is_err());
+        let negative = Light::Ambient(AmbientLight { radiance: [1.0, -1.0, 1.0], ..Default::default() });
+        assert!(negative.validate(0).is_err());
+        assert!(Light::Ambient(AmbientLight::default()).validate(0).is_ok());
+    }
+}

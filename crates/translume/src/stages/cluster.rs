@@ -1,0 +1,97 @@
+//! Cluster: the texels summed up their tree, four to one, level by level.
+//!
+//! reads  texel positions, normals, irradiance      writes  clusters of every level
+//! twin   `translume_reference::cluster`            WGSL    `cluster.wgsl`
+
+use crate::body::Buffers;
+use crate::gpu::{self, READ, UNIFORM_ARRAY, UNIFORM_STRIDE, WRITE};
+use crate::layout::LevelLayout;
+
+pub(crate) struct ClusterStage {
+    layout: wgpu::BindGroupLayout,
+    from_texels: wgpu::ComputePipeline,
+    from_clusters: wgpu::ComputePipeline,
+}
+
+/// Where the levels of a body's tree lie. Level 0 is the texels; level l has one node for every 4^l of them.
+#[derive(Clone, Debug)]
+pub(crate) struct Tree {
+    /// Nodes of each level, from the texels up to a single node.
+    pub counts: Vec<u32>,
+    /// First entry of each level in the buffer of clusters; level 0 is not in it.
+    pub offsets: Vec<u32>,
+}
+
+impl Tree {
+    pub fn new(texels: u32) -> Self {
+        let mut counts = vec![texels];
+        let mut offsets = vec![0];
+        let mut total = 0;
+        let mut count = texels;
+        while count > 1 {
+            count = count.div_ceil(4);
+            counts.push(count);
+            offsets.push(total);
+            total += count;
+        }
+        Self { counts, offsets }
+    }
+
+    /// Entries of the buffer of clusters.
+    pub fn clusters(&self) -> u32 {
+        self.counts.iter().skip(1).sum()
+    }
+
+    pub fn top_level(&self) -> u32 {
+        self.counts.len() as u32 - 1
+    }
+
+    /// One uniform per level above the texels, ready for dynamic offsets.
+    pub fn uniforms(&self) -> Vec<u8> {
+        let stride = UNIFORM_STRIDE as usize;
+        let mut bytes = vec![0; stride * (self.counts.len() - 1).max(1)];
+        for level in 1..self.counts.len() {
+            let uniform = LevelLayout {
+                child_count: self.counts[level - 1],
+                node_count: self.counts[level],
+                child_offset: self.offsets[level - 1],
+                node_offset: self.offsets[level],
+            };
+            let at = stride * (level - 1);
+            bytes[at..at + size_of::<LevelLayout>()].copy_from_slice(bytemuck::bytes_of(&uniform));
+        }
+        bytes
+    }
+}
+
+impl ClusterStage {
+    pub fn new(device: &wgpu::Device) -> Self {
+        let types = [UNIFORM_ARRAY, READ, READ, READ, WRITE];
+        let layout = gpu::layout(device, "cluster", wgpu::ShaderStages::COMPUTE, &types);
+        let module = gpu::module(device, translume_shaders::CLUSTER);
+        Self {
+            from_texels: gpu::compute_pipeline(device, &layout, &module, "from_texels"),
+            from_clusters: gpu::compute_pipeline(device, &layout, &module, "from_clusters"),
+            layout,
+        }
+    }
+
+    pub fn bind(&self, device: &wgpu::Device, buffers: &Buffers) -> wgpu::BindGroup {
+        let resources = [
+            gpu::uniform_slot::<LevelLayout>(&buffers.cluster_uniforms),
+            buffers.texel_positions.as_entire_binding(),
+            buffers.texel_normals.as_entire_binding(),
+            buffers.irradiance.as_entire_binding(),
+            buffers.clusters.as_entire_binding(),
+        ];
+        gpu::bind(device, "cluster", &self.layout, &resources)
+    }
+
+    pub fn encode(&self, pass: &mut wgpu::ComputePass<'_>, group: &wgpu::BindGroup, tree: &Tree) {
+        for level in 1..tree.counts.len() {
+            pass.set_pipeline(if level == 1 { &self.from_texels } else { &self.from_clusters });
+            pass.set_bind_group(0, group, &[(level - 1) as u32 * UNIFORM_STRIDE as u32]);
+            gpu::dispatch(pass, tree.counts[level]);
+        }
+    }
+}

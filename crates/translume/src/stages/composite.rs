@@ -1,0 +1,147 @@
+//! Composite: the camera's view of a body, L_o = F_t(η, ω_o)·B/π.
+//!
+//! reads  positions, normals, exitance texture       writes  the host's colour and depth attachments
+//! twin   `translume_reference::composite`           WGSL    `composite.wgsl`
+
+use crate::gpu::{self, FLOAT_TEXTURE, READ, UNIFORM};
+use crate::layout::{AtlasVertexLayout, CompositeLayout};
+use crate::{Body, Camera};
+use glam::{Mat4, Vec3};
+use wgpu::ShaderStages;
+
+/// What the host draws into.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CompositeTarget {
+    /// Format of the colour attachment; radiance is linear, so a float format keeps it whole.
+    pub format: wgpu::TextureFormat,
+    /// Format of the depth attachment and which depth is nearer; `None` draws without depth.
+    pub depth: Option<(wgpu::TextureFormat, wgpu::CompareFunction)>,
+    /// Samples per pixel of both attachments.
+    pub samples: u32,
+}
+
+impl Default for CompositeTarget {
+    /// `Rgba16Float` with `Depth32Float`, nearer is less, one sample.
+    fn default() -> Self {
+        Self {
+            format: wgpu::TextureFormat::Rgba16Float,
+            depth: Some((wgpu::TextureFormat::Depth32Float, wgpu::CompareFunction::Less)),
+            samples: 1,
+        }
+    }
+}
+
+/// Draws bodies into one kind of target.
+pub struct Composite {
+    layout: wgpu::BindGroupLayout,
+    smooth: wgpu::RenderPipeline,
+    flat: wgpu::RenderPipeline,
+}
+
+/// One body seen by one camera.
+pub struct CompositeView {
+    uniform: wgpu::Buffer,
+    group: wgpu::BindGroup,
+    vertices: wgpu::Buffer,
+    indices: wgpu::Buffer,
+    index_count: u32,
+    flat: bool,
+}
+
+impl Composite {
+    pub(crate) fn new(device: &wgpu::Device, target: CompositeTarget) -> Self {
+        let types = [UNIFORM, READ, READ, FLOAT_TEXTURE];
+        let layout = gpu::layout(device, "composite", ShaderStages::VERTEX_FRAGMENT, &types);
+        let module = gpu::module(device, translume_shaders::COMPOSITE);
+        let pipeline = |flat| pipeline(device, &layout, &module, target, flat);
+        Self { smooth: pipeline(false), flat: pipeline(true), layout }
+    }
+
+    /// Binds a body for drawing. Needed once per body and camera.
+    #[must_use]
+    pub fn view(&self, device: &wgpu::Device, body: &Body) -> CompositeView {
+        let uniform = gpu::uniform_buffer(device, "composite", size_of::<CompositeLayout>() as u64);
+        let buffers = &body.buffers;
+        let resources = [
+            uniform.as_entire_binding(),
+            buffers.positions.as_entire_binding(),
+            buffers.normals.as_entire_binding(),
+            wgpu::BindingResource::TextureView(body.exitance_view()),
+        ];
+        CompositeView {
+            group: gpu::bind(device, "composite", &self.layout, &resources),
+            uniform,
+            vertices: buffers.atlas_vertices.clone(),
+            indices: buffers.atlas_indices.clone(),
+            index_count: body.extent.triangles * 3,
+            flat: body.flat_normals,
+        }
+    }
+
+    /// Records one draw. Call [`CompositeView::prepare`] before the pass begins.
+    pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>, view: &CompositeView) {
+        pass.set_pipeline(if view.flat { &self.flat } else { &self.smooth });
+        pass.set_bind_group(0, &view.group, &[]);
+        pass.set_vertex_buffer(0, view.vertices.slice(..));
+        pass.set_index_buffer(view.indices.slice(..), wgpu::IndexFormat::Uint32);
+        pass.draw_indexed(0..view.index_count, 0, 0..1);
+    }
+}
+
+impl CompositeView {
+    /// Takes over the camera, and the body's medium and profile.
+    pub fn prepare(&self, queue: &wgpu::Queue, body: &Body, camera: &Camera) {
+        let to_world = Mat4::from_scale(Vec3::splat(1.0 / body.mm_per_unit));
+        let uniform = CompositeLayout {
+            view_projection: (Mat4::from_cols_array_2d(&camera.view_projection) * to_world).to_cols_array_2d(),
+            eye: camera.eye.map(|x| x * body.mm_per_unit),
+            eta: body.medium().ior,
+            exit_scale: body.profile().exit_scale(body.medium().ior),
+            padding: [0; 3],
+        };
+        queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&uniform));
+    }
+}
+
+fn pipeline(
+    device: &wgpu::Device,
+    layout: &wgpu::BindGroupLayout,
+    module: &wgpu::ShaderModule,
+    target: CompositeTarget,
+    flat: bool,
+) -> wgpu::RenderPipeline {
+    let constants = [("FLAT_NORMALS", f64::from(u8::from(flat)))];
+    let vertex = wgpu::VertexBufferLayout {
+        array_stride: size_of::<AtlasVertexLayout>() as u64,
+        step_mode: wgpu::VertexStepMode::Vertex,
+        attributes: &wgpu::vertex_attr_array![0 => Uint32, 1 => Float32x2],
+    };
+    device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: Some("composite"),
+        layout: Some(&gpu::pipeline_layout(device, "composite", layout)),
+        vertex: wgpu::VertexState {
+            module,
+            entry_point: Some("vertex"),
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            buffers: &[Some(vertex)],
+        },
+        // Scans are open: their inside is drawn too, with the light of their outside.
+        primitive: wgpu::PrimitiveState::default(),
+        depth_stencil: target.depth.map(|(format, compare)| wgpu::DepthStencilState {
+            format,
+            depth_write_enabled: Some(true),
+            depth_compare: Some(compare),
+            stencil: wgpu::StencilState::default(),
+            bias: wgpu::DepthBiasState::default(),
+        }),
+        multisample: wgpu::MultisampleState { count: target.samples, ..Default::default() },
+        fragment: Some(wgpu::FragmentState {
+            module,
+            entry_point: Some("fragment"),
+            compilation_options: wgpu::PipelineCompilationOptions { constants: &constants, ..Default::default() },
+            targets: &[Some(target.format.into())],
+        }),
+        multiview_mask: None,
+        cache: None,
+    })
+}

@@ -1,0 +1,84 @@
+//! One stage of the way of the data each: bindings, sizes and dispatch. The WGSL of a stage has the stage's name.
+
+pub(crate) mod cluster;
+pub(crate) mod composite;
+pub(crate) mod deform;
+pub(crate) mod gather;
+pub(crate) mod resolve;
+pub(crate) mod scatter;
+pub(crate) mod shadow;
+
+/// A stage of a frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[repr(u8)]
+pub enum Stage {
+    /// Rest pose → positions and normals.
+    Deform,
+    /// One depth map per shadowed light.
+    Shadow,
+    /// Lights → irradiance per texel.
+    Gather,
+    /// Texels → tree of clusters.
+    Cluster,
+    /// Irradiance → radiant exitance.
+    Scatter,
+    /// Dense texels → texture.
+    Resolve,
+}
+
+impl Stage {
+    /// Every stage, in the order light flows.
+    pub const ALL: [Self; 6] =
+        [Self::Deform, Self::Shadow, Self::Gather, Self::Cluster, Self::Scatter, Self::Resolve];
+}
+
+/// A set of stages.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct StageSet(u8);
+
+impl StageSet {
+    /// A stage and everything that reads what it writes.
+    #[must_use]
+    pub fn from_stage_on(first: Stage) -> Self {
+        Self(Stage::ALL.into_iter().filter(|stage| *stage as u8 >= first as u8).fold(0, |set, stage| set | 1 << stage as u8))
+    }
+
+    /// Whether the stage is in the set.
+    #[must_use]
+    pub fn contains(self, stage: Stage) -> bool {
+        self.0 & (1 << stage as u8) != 0
+    }
+
+    /// Whether no stage is in the set.
+    #[must_use]
+    pub fn is_empty(self) -> bool {
+        self.0 == 0
+    }
+
+    pub(crate) fn insert(&mut self, other: Self) {
+        self.0 |= other.0;
+    }
+}
+
+/// The pipelines of every stage that a frame records.
+pub(crate) struct Stages {
+    pub deform: deform::Deform,
+    pub shadow: shadow::Shadow,
+    pub gather: gather::Gather,
+    pub cluster: cluster::ClusterStage,
+    pub scatter: scatter::Scatter,
+    pub resolve: resolve::Resolve,
+}
+
+impl Stages {
+    pub fn new(device: &wgpu::Device) -> Self {
+        Self {
+            deform: deform::Deform::new(device),
+            shadow: shadow::Shadow::new(device),
+            gather: gather::Gather::new(device),
+            cluster: cluster::ClusterStage::new(device),
+            scatter: scatter::Scatter::new(device),
+            resolve: resolve::Resolve::new(device),
+        }
+    }
+}

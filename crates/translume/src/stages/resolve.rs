@@ -1,0 +1,45 @@
+//! Resolve: the dense texels → the square texture that materials sample, gutters filled.
+//!
+//! reads  exitance per texel, which texel fills which pixel      writes  the exitance texture
+//! twin   a look-up per pixel, in the tests                      WGSL    `resolve.wgsl`
+
+use crate::gpu::{self, READ};
+
+pub(crate) struct Resolve {
+    layout: wgpu::BindGroupLayout,
+    resolve: wgpu::ComputePipeline,
+}
+
+impl Resolve {
+    /// Full floats: exitance keeps the host's unit, and sunlight in lux overflows half floats.
+    pub const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
+
+    pub fn new(device: &wgpu::Device) -> Self {
+        let texture = wgpu::BindingType::StorageTexture {
+            access: wgpu::StorageTextureAccess::WriteOnly,
+            format: Self::FORMAT,
+            view_dimension: wgpu::TextureViewDimension::D2,
+        };
+        let layout = gpu::layout(device, "resolve", wgpu::ShaderStages::COMPUTE, &[READ, READ, texture]);
+        let module = gpu::module(device, translume_shaders::RESOLVE);
+        Self { resolve: gpu::compute_pipeline(device, &layout, &module, "resolve"), layout }
+    }
+
+    pub fn bind(
+        &self,
+        device: &wgpu::Device,
+        values: &wgpu::Buffer,
+        pixels: &wgpu::Buffer,
+        texture: &wgpu::TextureView,
+    ) -> wgpu::BindGroup {
+        let resources =
+            [values.as_entire_binding(), pixels.as_entire_binding(), wgpu::BindingResource::TextureView(texture)];
+        gpu::bind(device, "resolve", &self.layout, &resources)
+    }
+
+    pub fn encode(&self, pass: &mut wgpu::ComputePass<'_>, group: &wgpu::BindGroup, size: u32) {
+        pass.set_pipeline(&self.resolve);
+        pass.set_bind_group(0, group, &[]);
+        pass.dispatch_workgroups(size.div_ceil(8), size.div_ceil(8), 1);
+    }
+}

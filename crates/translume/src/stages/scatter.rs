@@ -1,0 +1,96 @@
+//! Scatter: irradiance → radiant exitance per texel, B_i = Σ_j E_j·A_j·K̄(|p_i − p_j|, s_j).
+//!
+//! reads  texel positions, normals, irradiance, clusters, kernel table      writes  exitance per texel, linear RGB
+//! twin   `translume_reference::scatter`                                    WGSL    `scatter.wgsl`
+
+use crate::body::Buffers;
+use crate::gpu::{self, FLOAT_TEXTURE, READ, UNIFORM_ARRAY, UNIFORM_STRIDE, WRITE};
+use crate::layout::ScatterLayout;
+
+/// How the sum over sources is evaluated.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Method {
+    /// Every texel collects from every other: exact, and quadratic in the number of texels. What everything else is compared with.
+    AllPairs,
+    /// Every texel walks the tree of clusters and takes a cluster as one source as soon as its radius is below
+    /// `theta`·√(distance² + z_r²).
+    Tree {
+        /// Opening angle, 0.05..=2. Smaller is more accurate: the error falls roughly with its square.
+        theta: f32,
+    },
+}
+
+impl Default for Method {
+    /// The tree at θ = 0.4.
+    fn default() -> Self {
+        Self::Tree { theta: 0.4 }
+    }
+}
+
+/// Sources of one dispatch of all pairs: short enough for a driver's watchdog, and far below the 65,535 loop iterations after
+/// which some software rasterisers silently stop an invocation.
+pub(crate) const SOURCES_PER_DISPATCH: u32 = 8192;
+
+pub(crate) struct Scatter {
+    layout: wgpu::BindGroupLayout,
+    all_pairs: wgpu::ComputePipeline,
+    tree: wgpu::ComputePipeline,
+}
+
+impl Scatter {
+    pub fn new(device: &wgpu::Device) -> Self {
+        let types = [UNIFORM_ARRAY, READ, READ, READ, READ, WRITE, FLOAT_TEXTURE];
+        let layout = gpu::layout(device, "scatter", wgpu::ShaderStages::COMPUTE, &types);
+        let module = gpu::module(device, translume_shaders::SCATTER);
+        Self {
+            all_pairs: gpu::compute_pipeline(device, &layout, &module, "all_pairs"),
+            tree: gpu::compute_pipeline(device, &layout, &module, "tree"),
+            layout,
+        }
+    }
+
+    pub fn bind(&self, device: &wgpu::Device, buffers: &Buffers, kernel_table: &wgpu::TextureView) -> wgpu::BindGroup {
+        let resources = [
+            gpu::uniform_slot::<ScatterLayout>(&buffers.scatter_uniforms),
+            buffers.texel_positions.as_entire_binding(),
+            buffers.texel_normals.as_entire_binding(),
+            buffers.irradiance.as_entire_binding(),
+            buffers.clusters.as_entire_binding(),
+            buffers.exitance.as_entire_binding(),
+            wgpu::BindingResource::TextureView(kernel_table),
+        ];
+        gpu::bind(device, "scatter", &self.layout, &resources)
+    }
+
+    /// One uniform per dispatch of all pairs, ready for dynamic offsets; the tree uses the first.
+    pub fn uniforms(layout: ScatterLayout) -> Vec<u8> {
+        let stride = UNIFORM_STRIDE as usize;
+        let dispatches = layout.texel_count.div_ceil(SOURCES_PER_DISPATCH).max(1);
+        let mut bytes = vec![0; stride * dispatches as usize];
+        for (k, slot) in (0..dispatches).zip(bytes.chunks_mut(stride)) {
+            let first_source = k * SOURCES_PER_DISPATCH;
+            let source_count = SOURCES_PER_DISPATCH.min(layout.texel_count - first_source);
+            let uniform = ScatterLayout { first_source, source_count, ..layout };
+            slot[..size_of::<ScatterLayout>()].copy_from_slice(bytemuck::bytes_of(&uniform));
+        }
+        bytes
+    }
+
+    pub fn encode(&self, pass: &mut wgpu::ComputePass<'_>, group: &wgpu::BindGroup, method: Method, texels: u32) {
+        match method {
+            Method::AllPairs => {
+                pass.set_pipeline(&self.all_pairs);
+                for k in 0..texels.div_ceil(SOURCES_PER_DISPATCH) {
+                    pass.set_bind_group(0, group, &[k * UNIFORM_STRIDE as u32]);
+                    gpu::dispatch(pass, texels);
+                }
+            }
+            Method::Tree { .. } => {
+                pass.set_pipeline(&self.tree);
+                pass.set_bind_group(0, group, &[0]);
+                gpu::dispatch(pass, texels);
+            }
+        }
+    }
+}

@@ -1,0 +1,80 @@
+// Cluster: the texels summed up their tree, four to one. Level 0 is the texels themselves.
+
+struct Level {
+    // Number of nodes below, and of nodes of this level.
+    child_count: u32,
+    node_count: u32,
+    // Where the children and the nodes of this level begin in `clusters`.
+    child_offset: u32,
+    node_offset: u32,
+}
+
+@group(0) @binding(0) var<uniform> level: Level;
+@group(0) @binding(1) var<storage, read> texel_positions: array<vec4f>;
+@group(0) @binding(2) var<storage, read> texel_normals: array<vec4f>;
+@group(0) @binding(3) var<storage, read> texel_irradiance: array<vec4f>;
+@group(0) @binding(4) var<storage, read_write> clusters: array<Cluster>;
+
+fn texel_cluster(index: u32) -> Cluster {
+    let place = texel_positions[index];
+    return Cluster(place.xyz, disc_spread(place.w), texel_irradiance[index].rgb * place.w, 0.0, texel_normals[index].xyz, place.w);
+}
+
+@compute @workgroup_size(64)
+fn from_texels(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_index) local: u32) {
+    let node = item_index(group, groups, local);
+    if node >= level.node_count { return; }
+    var children: array<Cluster, 4>;
+    for (var k = 0u; k < 4u; k++) {
+        if node * 4u + k < level.child_count { children[k] = texel_cluster(node * 4u + k); }
+    }
+    clusters[level.node_offset + node] = merge(&children, min(level.child_count - node * 4u, 4u));
+}
+
+@compute @workgroup_size(64)
+fn from_clusters(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_index) local: u32) {
+    let node = item_index(group, groups, local);
+    if node >= level.node_count { return; }
+    var children: array<Cluster, 4>;
+    for (var k = 0u; k < 4u; k++) {
+        if node * 4u + k < level.child_count { children[k] = clusters[level.child_offset + node * 4u + k]; }
+    }
+    clusters[level.node_offset + node] = merge(&children, min(level.child_count - node * 4u, 4u));
+}
+
+// Children weigh by their power; where none has any, by area; where none has that either, equally.
+fn merge(children: ptr<function, array<Cluster, 4>>, count: u32) -> Cluster {
+    var power = vec3f(0.0);
+    var area = 0.0;
+    for (var k = 0u; k < count; k++) {
+        power += (*children)[k].power;
+        area += (*children)[k].area;
+    }
+    let total = dot(power, vec3f(1.0));
+    var weights: vec4f;
+    var sum = 0.0;
+    for (var k = 0u; k < count; k++) {
+        var w = 1.0;
+        if total > 0.0 { w = dot((*children)[k].power, vec3f(1.0)) / total; }
+        else if area > 0.0 { w = (*children)[k].area / area; }
+        weights[k] = w;
+        sum += w;
+    }
+    var centroid = vec3f(0.0);
+    var normal = vec3f(0.0);
+    for (var k = 0u; k < count; k++) {
+        centroid += (*children)[k].centroid * (weights[k] / sum);
+        normal += (*children)[k].normal * weights[k];
+    }
+    var spread_squared = 0.0;
+    var radius = 0.0;
+    for (var k = 0u; k < count; k++) {
+        let offset = (*children)[k].centroid - centroid;
+        let spread = (*children)[k].spread;
+        spread_squared += (weights[k] / sum) * (spread * spread + dot(offset, offset));
+        radius = max(radius, length(offset) + (*children)[k].radius);
+    }
+    let normal_squared = dot(normal, normal);
+    normal *= select(0.0, inverseSqrt(max(normal_squared, 1e-30)), normal_squared > 1e-12 * sum * sum);
+    return Cluster(centroid, sqrt(spread_squared), power, radius, normal, area);
+}

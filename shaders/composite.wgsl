@@ -1,0 +1,46 @@
+// Composite: the camera's view of the body, L_o = F_t(eta, ω_o)·B/π, with an optional surface reflection.
+
+// Whether each triangle is seen with its own normal.
+override FLAT_NORMALS: bool = false;
+
+struct Composite {
+    // Millimetres to clip space.
+    view_projection: mat4x4f,
+    // Millimetres.
+    eye: vec3f,
+    eta: f32,
+    // 1/(1 − F_dr,ext) where the exit transmittance is normalised, else 1.
+    exit_scale: f32,
+    padding0: u32,
+    padding1: u32,
+    padding2: u32,
+}
+
+@group(0) @binding(0) var<uniform> composite: Composite;
+@group(0) @binding(1) var<storage, read> positions: array<vec4f>;
+@group(0) @binding(2) var<storage, read> normals: array<vec4f>;
+@group(0) @binding(3) var exitance: texture_2d<f32>;
+
+struct Fragment {
+    @builtin(position) clip: vec4f,
+    @location(0) position: vec3f,
+    @location(1) normal: vec3f,
+    @location(2) uv: vec2f,
+}
+
+@vertex
+fn vertex(@location(0) xref: u32, @location(1) uv: vec2f) -> Fragment {
+    let position = positions[xref].xyz;
+    return Fragment(composite.view_projection * vec4f(position, 1.0), position, normals[xref].xyz, uv);
+}
+
+@fragment
+fn fragment(in: Fragment) -> @location(0) vec4f {
+    let to_eye = normalize(composite.eye - in.position);
+    let face = cross(dpdx(in.position), dpdy(in.position));
+    let normal = normalize(select(in.normal, face, FLAT_NORMALS));
+    let cosine = abs(dot(normal, to_eye));
+    let exitance_here = translume_exitance(exitance, in.uv);
+    let radiance = exitance_here * (0.31830988 * composite.exit_scale * fresnel_transmittance(composite.eta, cosine));
+    return vec4f(radiance, 1.0);
+}

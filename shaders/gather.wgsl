@@ -1,0 +1,214 @@
+// Gather: every light → position, normal, live area and irradiance of every texel.
+
+const DIRECTIONAL: u32 = 0u;
+const POINT: u32 = 1u;
+const NO_SHADOW: u32 = 0xffffffffu;
+// Samples along each side of a texel's square; shadow edges are filtered at this footprint.
+const FOOTPRINT: u32 = 4u;
+// Intervals of an ambient light's table over the cosine −1..1.
+const AMBIENT_INTERVALS: f32 = 32.0;
+
+struct Light {
+    // Unit vector towards a directional light; position of a point light, mm.
+    vector: vec3f,
+    kind: u32,
+    // Irradiance on a facing surface; radiant intensity in units of mm² times irradiance.
+    colour: vec3f,
+    // First of its shadow views, or NO_SHADOW.
+    first_view: u32,
+    // Light enters the body only inside this box, mm.
+    region_low: vec3f,
+    view_count: u32,
+    region_high: vec3f,
+    padding: u32,
+}
+
+// Unoccluded light from a cone of the sky.
+struct Ambient {
+    radiance: vec3f,
+    padding: u32,
+    axis: vec3f,
+    padding1: u32,
+    // Irradiance inside the surface for unit radiance, over the cosine between normal and axis; 33 values.
+    table: array<vec4f, 9>,
+}
+
+struct ShadowView {
+    matrix: mat4x4f,
+    // Width of a texel of the map, mm; for a perspective view at a depth of 1 mm.
+    texel: f32,
+    // 1 for a perspective view.
+    perspective: f32,
+    padding0: f32,
+    padding1: f32,
+}
+
+struct Gather {
+    texel_count: u32,
+    light_count: u32,
+    ambient_count: u32,
+    // 1 where every triangle keeps its own normal.
+    flat_normals: u32,
+    eta: f32,
+    winding: f32,
+    padding0: u32,
+    padding1: u32,
+    lights: array<Light, 64>,
+    views: array<ShadowView, 64>,
+    ambients: array<Ambient, 8>,
+}
+
+struct Texel {
+    triangle: u32,
+    barycentric_1: f32,
+    barycentric_2: f32,
+    // Rest area of the texel over that of its triangle.
+    area_ratio: f32,
+}
+
+@group(0) @binding(0) var<uniform> gather: Gather;
+@group(0) @binding(1) var<storage, read> texels: array<Texel>;
+@group(0) @binding(2) var<storage, read> triangles: array<u32>;
+@group(0) @binding(3) var<storage, read> positions: array<vec4f>;
+@group(0) @binding(4) var<storage, read> normals: array<vec4f>;
+// Position, live area in mm².
+@group(0) @binding(5) var<storage, read_write> texel_positions: array<vec4f>;
+@group(0) @binding(6) var<storage, read_write> texel_normals: array<vec4f>;
+@group(0) @binding(7) var<storage, read_write> texel_irradiance: array<vec4f>;
+@group(0) @binding(8) var shadow_maps: texture_depth_2d_array;
+@group(0) @binding(9) var shadow_sampler: sampler_comparison;
+
+// What a light needs to know of a texel.
+struct Receiver {
+    position: vec3f,
+    // Shading normal.
+    normal: vec3f,
+    // Normal of the triangle itself: shadows follow the geometry.
+    face: vec3f,
+    // Half the side of the texel's square, mm.
+    half_width: f32,
+    tangent: vec3f,
+    bitangent: vec3f,
+}
+
+@compute @workgroup_size(64)
+fn irradiance(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_index) local: u32) {
+    let index = item_index(group, groups, local);
+    if index >= gather.texel_count { return; }
+    let texel = texels[index];
+    let a = triangles[texel.triangle * 3u];
+    let b = triangles[texel.triangle * 3u + 1u];
+    let c = triangles[texel.triangle * 3u + 2u];
+    let pa = positions[a].xyz;
+    let pb = positions[b].xyz;
+    let pc = positions[c].xyz;
+    let weights = vec3f(1.0 - texel.barycentric_1 - texel.barycentric_2, texel.barycentric_1, texel.barycentric_2);
+    // Light is looked up on the triangle even where the texel's centre lies beyond its chart.
+    let inside = max(weights, vec3f(0.0)) / (max(weights.x, 0.0) + max(weights.y, 0.0) + max(weights.z, 0.0));
+
+    let doubled = cross(pb - pa, pc - pa);
+    let doubled_area = length(doubled);
+    let smooth_normal = safe_normalize(normals[a].xyz * inside.x + normals[b].xyz * inside.y + normals[c].xyz * inside.z, normals[a].xyz);
+    var receiver: Receiver;
+    receiver.position = pa * inside.x + pb * inside.y + pc * inside.z;
+    receiver.face = safe_normalize(doubled * gather.winding, smooth_normal);
+    receiver.normal = select(smooth_normal, receiver.face, gather.flat_normals == 1u);
+    let area = texel.area_ratio * 0.5 * doubled_area;
+    receiver.half_width = 0.5 * sqrt(area);
+    receiver.tangent = any_perpendicular(receiver.face);
+    receiver.bitangent = cross(receiver.face, receiver.tangent);
+
+    var light = vec3f(0.0);
+    for (var k = 0u; k < gather.light_count; k++) {
+        light += direct(k, receiver);
+    }
+    for (var k = 0u; k < gather.ambient_count; k++) {
+        light += ambient(k, receiver.normal);
+    }
+    texel_positions[index] = vec4f(pa * weights.x + pb * weights.y + pc * weights.z, area);
+    texel_normals[index] = vec4f(receiver.normal, 0.0);
+    texel_irradiance[index] = vec4f(light, 0.0);
+}
+
+fn direct(index: u32, receiver: Receiver) -> vec3f {
+    let kind = gather.lights[index].kind;
+    var to_light = gather.lights[index].vector;
+    var strength = gather.lights[index].colour;
+    if kind == POINT {
+        to_light -= receiver.position;
+        // A light on the surface itself would be infinitely bright in one point: within the texel it shines as from its rim.
+        let distance_squared = max(dot(to_light, to_light), max(receiver.half_width * receiver.half_width, 1e-12));
+        to_light = safe_normalize(to_light, receiver.normal);
+        strength /= distance_squared;
+    }
+    let cosine = dot(receiver.normal, to_light);
+    if cosine <= 0.0 { return vec3f(0.0); }
+    let entered = fresnel_transmittance(gather.eta, cosine) * cosine * region_fraction(index, receiver);
+    return strength * (entered * visibility(index, receiver, to_light));
+}
+
+// Part of the texel's square inside the box where the light enters.
+fn region_fraction(index: u32, receiver: Receiver) -> f32 {
+    let extent = max(receiver.half_width * sqrt(max(vec3f(1.0) - receiver.face * receiver.face, vec3f(0.0))), vec3f(1e-6));
+    let low = clamp((receiver.position - gather.lights[index].region_low) / (2.0 * extent) + 0.5, vec3f(0.0), vec3f(1.0));
+    let high = clamp((gather.lights[index].region_high - receiver.position) / (2.0 * extent) + 0.5, vec3f(0.0), vec3f(1.0));
+    let fraction = low * high;
+    return fraction.x * fraction.y * fraction.z;
+}
+
+fn visibility(index: u32, receiver: Receiver, to_light: vec3f) -> f32 {
+    let first = gather.lights[index].first_view;
+    if first == NO_SHADOW { return 1.0; }
+    var view = first;
+    if gather.lights[index].view_count == 6u { view += cube_face(-to_light); }
+    let matrix = gather.views[view].matrix;
+    let depth = mix(1.0, (matrix * vec4f(receiver.position, 1.0)).w, gather.views[view].perspective);
+    // Comparing with the four nearest texels of the map reaches one texel sideways along each axis; lifted by what the
+    // surface falls over that distance, a surface cannot shadow itself.
+    let cosine = dot(receiver.face, to_light);
+    let reach = 1.4142136 * gather.views[view].texel * depth;
+    let lifted = receiver.position + receiver.face * (reach * sqrt(max(1.0 - cosine * cosine, 0.0)) + 0.05 * reach);
+    var lit = 0.0;
+    let side = select(FOOTPRINT, 1u, receiver.half_width == 0.0);
+    for (var v = 0u; v < side; v++) {
+        for (var u = 0u; u < side; u++) {
+            let offset = (2.0 * vec2f(f32(u), f32(v)) + 1.0) / f32(side) - 1.0;
+            let point = lifted + (receiver.tangent * offset.x + receiver.bitangent * offset.y) * receiver.half_width;
+            lit += compare(matrix, view, point);
+        }
+    }
+    return lit / f32(side * side);
+}
+
+fn compare(matrix: mat4x4f, view: u32, point: vec3f) -> f32 {
+    let clip = matrix * vec4f(point, 1.0);
+    let ndc = clip.xyz / clip.w;
+    return textureSampleCompareLevel(shadow_maps, shadow_sampler, ndc.xy * vec2f(0.5, -0.5) + 0.5, view, ndc.z);
+}
+
+// Faces in the order +x, −x, +y, −y, +z, −z.
+fn cube_face(direction: vec3f) -> u32 {
+    let size = abs(direction);
+    if size.x >= size.y && size.x >= size.z { return select(1u, 0u, direction.x > 0.0); }
+    if size.y >= size.z { return select(3u, 2u, direction.y > 0.0); }
+    return select(5u, 4u, direction.z > 0.0);
+}
+
+fn ambient(index: u32, normal: vec3f) -> vec3f {
+    let x = clamp(dot(normal, gather.ambients[index].axis) * 0.5 + 0.5, 0.0, 1.0) * AMBIENT_INTERVALS;
+    let cell = min(u32(x), u32(AMBIENT_INTERVALS) - 1u);
+    let low = gather.ambients[index].table[cell / 4u][cell % 4u];
+    let high = gather.ambients[index].table[(cell + 1u) / 4u][(cell + 1u) % 4u];
+    return gather.ambients[index].radiance * mix(low, high, x - f32(cell));
+}
+
+fn safe_normalize(v: vec3f, fallback: vec3f) -> vec3f {
+    let length_squared = dot(v, v);
+    if length_squared > 0.0 { return v * inverseSqrt(length_squared); }
+    return fallback;
+}
+
+fn any_perpendicular(n: vec3f) -> vec3f {
+    let axis = select(vec3f(1.0, 0.0, 0.0), vec3f(0.0, 1.0, 0.0), abs(n.x) > 0.7);
+    return safe_normalize(cross(axis, n), axis);
+}

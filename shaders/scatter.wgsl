@@ -1,0 +1,97 @@
+// Scatter: irradiance → radiant exitance, B_i = Σ_j E_j·A_j·K̄(|p_i − p_j|, s_j), per texel.
+
+struct Scatter {
+    table: KernelTable,
+    texel_count: u32,
+    // Sources of one dispatch of `all_pairs`.
+    first_source: u32,
+    source_count: u32,
+    // Level at which the descent of `tree` starts, and its number of nodes.
+    top_level: u32,
+    top_count: u32,
+    // Opening angle: a cluster is accepted when radius < theta·√(distance² + z_r²).
+    theta_squared: f32,
+    // Square of the shortest mean free path of the three channels, mm².
+    z_r_squared: f32,
+    padding: u32,
+    // Where each level begins in `clusters`; level 0 is the texels.
+    offsets: array<vec4u, 4>,
+}
+
+@group(0) @binding(0) var<uniform> scatter: Scatter;
+@group(0) @binding(1) var<storage, read> texel_positions: array<vec4f>;
+@group(0) @binding(2) var<storage, read> texel_normals: array<vec4f>;
+@group(0) @binding(3) var<storage, read> texel_irradiance: array<vec4f>;
+@group(0) @binding(4) var<storage, read> clusters: array<Cluster>;
+@group(0) @binding(5) var<storage, read_write> exitance: array<vec4f>;
+@group(0) @binding(6) var kernel_table: texture_2d<f32>;
+
+fn from_source(receiver: vec3f, place: vec3f, spread: f32, normal: vec3f, power: vec3f) -> vec3f {
+    let offset = receiver - place;
+    let r2 = dot(offset, offset);
+    let along = dot(offset, normal);
+    let facing = select(0.0, along * along / r2, r2 > 0.0);
+    return power * area_averaged_profile(scatter.table, kernel_table, r2, spread * spread, min(facing, 1.0));
+}
+
+fn from_texel(receiver: vec3f, index: u32) -> vec3f {
+    let place = texel_positions[index];
+    return from_source(receiver, place.xyz, disc_spread(place.w), texel_normals[index].xyz, texel_irradiance[index].rgb * place.w);
+}
+
+// Every receiver collects from a range of sources: the exact sum that everything faster is compared with.
+@compute @workgroup_size(64)
+fn all_pairs(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_index) local: u32) {
+    let index = item_index(group, groups, local);
+    if index >= scatter.texel_count { return; }
+    let receiver = texel_positions[index].xyz;
+    var sum = vec3f(0.0);
+    for (var k = 0u; k < scatter.source_count; k++) {
+        sum += from_texel(receiver, scatter.first_source + k);
+    }
+    if scatter.first_source > 0u { sum += exitance[index].rgb; }
+    exitance[index] = vec4f(sum, 0.0);
+}
+
+// Every receiver walks the tree of sources on its own and takes a cluster as soon as it looks small.
+@compute @workgroup_size(64)
+fn tree(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_index) local: u32) {
+    let index = item_index(group, groups, local);
+    if index >= scatter.texel_count { return; }
+    let receiver = texel_positions[index].xyz;
+    var sum = vec3f(0.0);
+    var level = scatter.top_level;
+    var node = 0u;
+    // One way through the loop visits one node; a node is a cluster, or a texel where level is 0.
+    loop {
+        if node >= level_count(level) { break; }
+        var open = false;
+        if level == 0u {
+            sum += from_texel(receiver, node);
+        } else {
+            let cluster = clusters[scatter.offsets[level / 4u][level % 4u] + node];
+            let offset = receiver - cluster.centroid;
+            let size = max(1.6 * cluster.spread, 0.9 * cluster.radius);
+            open = size * size >= scatter.theta_squared * (dot(offset, offset) + scatter.z_r_squared);
+            if !open {
+                sum += from_source(receiver, cluster.centroid, cluster.spread, cluster.normal, cluster.power);
+            }
+        }
+        if open {
+            level -= 1u;
+            node *= 4u;
+        } else {
+            node += 1u;
+            while level < scatter.top_level && (node % 4u == 0u || node >= level_count(level)) {
+                node = (node + 3u) / 4u;
+                level += 1u;
+            }
+        }
+    }
+    exitance[index] = vec4f(sum, 0.0);
+}
+
+fn level_count(level: u32) -> u32 {
+    let run = 1u << (2u * level);
+    return (scatter.texel_count + run - 1u) / run;
+}

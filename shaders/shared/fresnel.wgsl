@@ -1,0 +1,13 @@
+// Unpolarised transmittance of a smooth dielectric for light that arrives from outside.
+// eta: index inside over index outside, > 0        cosine: angle to the normal outside, 0..1
+// For eta < 1 everything beyond the critical angle is reflected. Exactly 1 at eta = 1.
+fn fresnel_transmittance(eta: f32, cosine: f32) -> f32 {
+    if eta == 1.0 { return 1.0; }
+    let outside = clamp(cosine, 0.0, 1.0);
+    let inside_squared = 1.0 - (1.0 - outside * outside) / (eta * eta);
+    if inside_squared <= 0.0 { return 0.0; }
+    let inside = sqrt(inside_squared);
+    let s = (outside - eta * inside) / (outside + eta * inside);
+    let p = (eta * outside - inside) / (eta * outside + inside);
+    return 1.0 - 0.5 * (s * s + p * p);
+}

@@ -1,0 +1,38 @@
+// The area-averaged profile: ln of the mean of R_d over a flat disc of rms radius s at distance r, RGB, ln(1/mm²).
+// Columns follow log2 r², rows log2 s², so that power laws are straight lines; the lower half of the texture holds the disc lying
+// along r, the upper half the disc facing r.
+struct KernelTable {
+    // Smallest r² and s², mm².
+    least_r2: f32,
+    least_s2: f32,
+    columns: u32,
+    rows: u32,
+}
+
+const R2_CELLS_PER_OCTAVE: f32 = 8.0;
+const S2_CELLS_PER_OCTAVE: f32 = 4.0;
+
+fn table_coordinate(value: f32, least: f32, cells_per_octave: f32, cells: u32) -> f32 {
+    return min(log2(max(value / least, 1.0)) * cells_per_octave, f32(cells - 1u) - 0.001);
+}
+
+// r2: squared distance, mm²     s2: squared rms radius of the source, mm²
+// facing: squared cosine between the source's mean normal and the connecting line       returns 1/mm²
+fn area_averaged_profile(table: KernelTable, texels: texture_2d<f32>, r2: f32, s2: f32, facing: f32) -> vec3f {
+    let x = table_coordinate(r2, table.least_r2, R2_CELLS_PER_OCTAVE, table.columns);
+    let y = table_coordinate(s2, table.least_s2, S2_CELLS_PER_OCTAVE, table.rows);
+    let column = i32(x);
+    let row = i32(y);
+    let fx = x - f32(column);
+    let fy = y - f32(row);
+    let facing_row = row + i32(table.rows);
+    let lying = mix(
+        mix(textureLoad(texels, vec2i(column, row), 0).rgb, textureLoad(texels, vec2i(column + 1, row), 0).rgb, fx),
+        mix(textureLoad(texels, vec2i(column, row + 1), 0).rgb, textureLoad(texels, vec2i(column + 1, row + 1), 0).rgb, fx),
+        fy);
+    let upright = mix(
+        mix(textureLoad(texels, vec2i(column, facing_row), 0).rgb, textureLoad(texels, vec2i(column + 1, facing_row), 0).rgb, fx),
+        mix(textureLoad(texels, vec2i(column, facing_row + 1), 0).rgb, textureLoad(texels, vec2i(column + 1, facing_row + 1), 0).rgb, fx),
+        fy);
+    return mix(exp(lying), exp(upright), facing);
+}

@@ -1,0 +1,47 @@
+//! The WGSL of translume: one file per stage, shared pieces with one subject each, joined here.
+//!
+//! ```
+//! for shader in translume_shaders::ALL {
+//!     assert!(shader.source.contains("fn "));
+//! }
+//! ```
+
+/// One stage's complete WGSL.
+#[derive(Clone, Copy, Debug)]
+pub struct Shader {
+    /// The stage's name, for labels and captures.
+    pub name: &'static str,
+    /// A complete module.
+    pub source: &'static str,
+}
+
+macro_rules! shader {
+    ($name:literal, $($file:literal),+) => {
+        Shader { name: $name, source: concat!($(include_str!(concat!("../", $file)), "\n"),+) }
+    };
+}
+
+/// Rest pose and morph targets → positions and normals.
+pub const DEFORM: Shader = shader!("deform", "shared/dispatch.wgsl", "deform.wgsl");
+/// Depth maps from lights.
+pub const SHADOW: Shader = shader!("shadow", "shadow.wgsl");
+/// Lights → position, normal, area, irradiance of every texel.
+pub const GATHER: Shader = shader!("gather", "shared/dispatch.wgsl", "shared/fresnel.wgsl", "gather.wgsl");
+/// Texels → their tree of clusters.
+pub const CLUSTER: Shader = shader!("cluster", "shared/dispatch.wgsl", "shared/cluster.wgsl", "cluster.wgsl");
+/// Irradiance → radiant exitance.
+pub const SCATTER: Shader =
+    shader!("scatter", "shared/dispatch.wgsl", "shared/cluster.wgsl", "shared/kernel_table.wgsl", "scatter.wgsl");
+/// Dense texels → texture.
+pub const RESOLVE: Shader = shader!("resolve", "resolve.wgsl");
+/// The camera pass.
+pub const COMPOSITE: Shader =
+    shader!("composite", "shared/fresnel.wgsl", "shared/exitance.wgsl", "composite.wgsl");
+
+/// Every module, in the order light flows through them.
+pub const ALL: [Shader; 7] = [DEFORM, SHADOW, GATHER, CLUSTER, SCATTER, RESOLVE, COMPOSITE];
+
+/// WGSL functions for a host's own material: `translume_exitance(texture, uv)` samples radiant exitance B, and
+/// `fresnel_transmittance(eta, cosine)` weighs what leaves towards the eye: L = F_t·B/π.
+pub const MATERIAL: &str =
+    concat!(include_str!("../shared/exitance.wgsl"), "\n", include_str!("../shared/fresnel.wgsl"));
