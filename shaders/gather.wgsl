@@ -164,10 +164,12 @@ fn visibility(index: u32, receiver: Receiver, to_light: vec3f) -> f32 {
     let matrix = gather.views[view].matrix;
     let depth = mix(1.0, (matrix * vec4f(receiver.position, 1.0)).w, gather.views[view].perspective);
     // Comparing with the four nearest texels of the map reaches one texel sideways along each axis; lifted by what the
-    // surface falls over that distance, a surface cannot shadow itself.
+    // surface falls over that distance, a surface cannot shadow itself. The square of the texel lies in the plane of its
+    // triangle while the surface curves away: a tenth of its half width is the sagitta at a radius of five half widths.
     let cosine = dot(receiver.face, to_light);
     let reach = 1.4142136 * gather.views[view].texel * depth;
-    let lifted = receiver.position + receiver.face * (reach * sqrt(max(1.0 - cosine * cosine, 0.0)) + 0.05 * reach);
+    let lift = reach * (sqrt(max(1.0 - cosine * cosine, 0.0)) + 0.05) + 0.1 * receiver.half_width;
+    let lifted = receiver.position + receiver.face * lift;
     var lit = 0.0;
     let side = select(FOOTPRINT, 1u, receiver.half_width == 0.0);
     for (var v = 0u; v < side; v++) {
