@@ -11,15 +11,17 @@ struct Composite {
     eta: f32,
     // 1/(1 − F_dr,ext) where the exit transmittance is normalised, else 1.
     exit_scale: f32,
+    // Of the surface; 0 where it reflects nothing.
+    roughness: f32,
     padding0: u32,
     padding1: u32,
-    padding2: u32,
 }
 
 @group(0) @binding(0) var<uniform> composite: Composite;
 @group(0) @binding(1) var<storage, read> positions: array<vec4f>;
 @group(0) @binding(2) var<storage, read> normals: array<vec4f>;
 @group(0) @binding(3) var exitance: texture_2d<f32>;
+@group(0) @binding(4) var<uniform> lighting: Gather;
 
 struct Fragment {
     @builtin(position) clip: vec4f,
@@ -38,9 +40,12 @@ fn vertex(@location(0) xref: u32, @location(1) uv: vec2f) -> Fragment {
 fn fragment(in: Fragment) -> @location(0) vec4f {
     let to_eye = normalize(composite.eye - in.position);
     let face = cross(dpdx(in.position), dpdy(in.position));
-    let normal = normalize(select(in.normal, face, FLAT_NORMALS));
-    let cosine = abs(dot(normal, to_eye));
-    let exitance_here = translume_exitance(exitance, in.uv);
-    let radiance = exitance_here * (0.31830988 * composite.exit_scale * fresnel_transmittance(composite.eta, cosine));
+    let shading = normalize(select(in.normal, face, FLAT_NORMALS));
+    let normal = select(-shading, shading, dot(shading, to_eye) >= 0.0);
+    let transmitted = fresnel_transmittance(composite.eta, dot(normal, to_eye));
+    var radiance = translume_exitance(exitance, in.uv) * (0.31830988 * composite.exit_scale * transmitted);
+    if composite.roughness > 0.0 {
+        radiance += gloss(composite.roughness, in.position, normal, to_eye);
+    }
     return vec4f(radiance, 1.0);
 }

@@ -26,17 +26,24 @@ struct Scatter {
 @group(0) @binding(5) var<storage, read_write> exitance: array<vec4f>;
 @group(0) @binding(6) var kernel_table: texture_2d<f32>;
 
-fn from_source(receiver: vec3f, place: vec3f, spread: f32, normal: vec3f, power: vec3f) -> vec3f {
-    let offset = receiver - place;
-    let r2 = dot(offset, offset);
-    let along = dot(offset, normal);
-    let facing = select(0.0, along * along / r2, r2 > 0.0);
-    return power * area_averaged_profile(scatter.table, kernel_table, r2, spread * spread, min(facing, 1.0));
+struct Source {
+    place: vec3f,
+    spread: f32,
+    normal: vec3f,
+    power: vec3f,
 }
 
-fn from_texel(receiver: vec3f, index: u32) -> vec3f {
+fn texel_source(index: u32) -> Source {
     let place = texel_positions[index];
-    return from_source(receiver, place.xyz, disc_spread(place.w), texel_normals[index].xyz, texel_irradiance[index].rgb * place.w);
+    return Source(place.xyz, disc_spread(place.w), texel_normals[index].xyz, texel_irradiance[index].rgb * place.w);
+}
+
+fn received(receiver: vec3f, source: Source) -> vec3f {
+    let offset = receiver - source.place;
+    let r2 = dot(offset, offset);
+    let along = dot(offset, source.normal);
+    let facing = select(0.0, along * along / r2, r2 > 0.0);
+    return source.power * area_averaged_profile(scatter.table, kernel_table, r2, source.spread * source.spread, min(facing, 1.0));
 }
 
 // Every receiver collects from a range of sources: the exact sum that everything faster is compared with.
@@ -47,7 +54,7 @@ fn all_pairs(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) group
     let receiver = texel_positions[index].xyz;
     var sum = vec3f(0.0);
     for (var k = 0u; k < scatter.source_count; k++) {
-        sum += from_texel(receiver, scatter.first_source + k);
+        sum += received(receiver, texel_source(scatter.first_source + k));
     }
     if scatter.first_source > 0u { sum += exitance[index].rgb; }
     exitance[index] = vec4f(sum, 0.0);
@@ -62,31 +69,38 @@ fn tree(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: ve
     var sum = vec3f(0.0);
     var level = scatter.top_level;
     var node = 0u;
-    // One way through the loop visits one node; a node is a cluster, or a texel where level is 0.
+    // The inner loop walks to the next node that is accepted, a cluster or, at level 0, a texel; the kernel is then evaluated
+    // outside of it, where all invocations of a wave meet again.
     loop {
-        if node >= level_count(level) { break; }
-        var open = false;
-        if level == 0u {
-            sum += from_texel(receiver, node);
-        } else {
-            let cluster = clusters[scatter.offsets[level / 4u][level % 4u] + node];
-            let offset = receiver - cluster.centroid;
-            let size = max(1.6 * cluster.spread, 0.9 * cluster.radius);
-            open = size * size >= scatter.theta_squared * (dot(offset, offset) + scatter.z_r_squared);
-            if !open {
-                sum += from_source(receiver, cluster.centroid, cluster.spread, cluster.normal, cluster.power);
+        var source: Source;
+        var found = false;
+        while !found && node < level_count(level) {
+            if level == 0u {
+                source = texel_source(node);
+                found = true;
+            } else {
+                let cluster = clusters[scatter.offsets[level / 4u][level % 4u] + node];
+                let offset = receiver - cluster.centroid;
+                let size = max(1.6 * cluster.spread, 0.9 * cluster.radius);
+                found = size * size < scatter.theta_squared * (dot(offset, offset) + scatter.z_r_squared);
+                source = Source(cluster.centroid, cluster.spread, cluster.normal, cluster.power);
+                // A dark cluster needs no opening.
+                found = found || all(cluster.power == vec3f(0.0));
+                if !found {
+                    level -= 1u;
+                    node *= 4u;
+                    continue;
+                }
             }
-        }
-        if open {
-            level -= 1u;
-            node *= 4u;
-        } else {
+            found = any(source.power > vec3f(0.0));
             node += 1u;
             while level < scatter.top_level && (node % 4u == 0u || node >= level_count(level)) {
                 node = (node + 3u) / 4u;
                 level += 1u;
             }
         }
+        if !found { break; }
+        sum += received(receiver, source);
     }
     exitance[index] = vec4f(sum, 0.0);
 }

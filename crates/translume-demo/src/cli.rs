@@ -70,6 +70,15 @@ pub struct Render {
     /// Samples per pixel along each axis.
     #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u32).range(1..=8))]
     pub samples: u32,
+    /// Roughness of the surface's own reflection, 0.03 (polished) to 1 (matt); 0 for none. By default 0.35 for a model and 0 for a scene.
+    #[arg(long, value_name = "X")]
+    pub gloss: Option<f32>,
+    /// Where the camera stands: degrees to the right of the front and upwards.
+    #[arg(long, value_name = "YAW,PITCH", value_delimiter = ',', num_args = 2, allow_negative_numbers = true, default_values_t = [14.0, 9.0])]
+    pub view: Vec<f32>,
+    /// Which axis of the model points up: y or z.
+    #[arg(long, value_name = "AXIS", default_value = "y", value_parser = ["y", "z"])]
+    pub up: String,
     /// Brightness of a PNG, in stops.
     #[arg(long, value_name = "EV", default_value_t = 0.0, allow_negative_numbers = true)]
     pub exposure: f32,

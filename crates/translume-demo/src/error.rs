@@ -26,6 +26,4 @@ pub enum Error {
     NoAdapter(String),
     #[error("{adapter}: no device: {reason}")]
     NoDevice { adapter: String, reason: String },
-    #[error("{adapter}: {reason}")]
-    Gpu { adapter: String, reason: String },
 }

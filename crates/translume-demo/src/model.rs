@@ -41,3 +41,11 @@ pub fn unwrap(mesh: &Mesh, size: u32) -> Result<Atlas, Error> {
     bar.finish_and_clear();
     Ok(atlas?)
 }
+
+/// Turns a model whose z axis points up, as CAD programs and scanners write them.
+pub fn turn_z_up(mesh: &mut Mesh) {
+    let deltas = mesh.targets.iter_mut().flat_map(|target| &mut target.position_deltas);
+    for vector in mesh.positions.iter_mut().chain(&mut mesh.normals).chain(deltas) {
+        *vector = [vector[0], vector[2], -vector[1]];
+    }
+}

@@ -5,12 +5,25 @@ use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 use tempfile::NamedTempFile;
 
-/// Linear radiance with coverage in alpha, row by row from the top.
+/// A picture, row by row from the top.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Picture {
     pub width: u32,
     pub height: u32,
-    pub pixels: Vec<[f32; 4]>,
+    /// Linear: radiance, or what is left of it after tone mapping.
+    pub pixels: Vec<[f32; 3]>,
+}
+
+/// What happens to a sample before samples are averaged.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Develop {
+    /// Nothing: radiance over black.
+    Radiance,
+    /// Tone mapping over the backdrop. Averaging what is mapped, not what is to be mapped, keeps bright edges smooth.
+    Display {
+        /// Stops.
+        exposure: f32,
+    },
 }
 
 /// What a picture is written as.
@@ -20,42 +33,52 @@ pub enum Format {
     Exr,
 }
 
-/// Linear grey behind the body in a PNG.
-const BACKDROP: f32 = 0.018;
+/// Linear grey behind the body in a PNG, in the middle and at the rim.
+const BACKDROP: [f32; 2] = [0.075, 0.045];
 const FRAMES_PER_SECOND: u16 = 24;
 
+impl Develop {
+    /// `place`: from the middle of the picture, ±1 at its edges.
+    fn apply(self, [r, g, b, coverage]: [f32; 4], place: [f32; 2]) -> [f32; 3] {
+        match self {
+            Self::Radiance => [r, g, b],
+            Self::Display { exposure } => {
+                let rim = (0.5 * (place[0] * place[0] + place[1] * place[1])).min(1.0);
+                let backdrop = BACKDROP[0] + (BACKDROP[1] - BACKDROP[0]) * rim;
+                neutral([r, g, b].map(|c| c * exposure.exp2() + backdrop * (1.0 - coverage)))
+            }
+        }
+    }
+}
+
 impl Picture {
-    /// Averages `side`² samples a pixel.
-    pub fn from_samples(samples: &[[f32; 4]], samples_wide: u32, side: u32) -> Self {
+    /// Develops samples (radiance, coverage) and averages `side`² of them a pixel.
+    pub fn from_samples(samples: &[[f32; 4]], samples_wide: u32, side: u32, develop: Develop) -> Self {
         let width = samples_wide / side;
         let height = samples.len() as u32 / samples_wide / side;
         let weight = 1.0 / (side * side) as f32;
-        let pixels = (0..height)
-            .flat_map(|y| (0..width).map(move |x| (x, y)))
-            .map(|(x, y)| {
-                let mut sum = [0.0; 4];
-                for row in y * side..(y + 1) * side {
-                    for column in x * side..(x + 1) * side {
-                        let sample = samples[(row * samples_wide + column) as usize];
-                        sum = std::array::from_fn(|k| sum[k] + sample[k] * weight);
-                    }
+        let pixel = |x: u32, y: u32| {
+            let mut sum = [0.0; 3];
+            for row in y * side..(y + 1) * side {
+                for column in x * side..(x + 1) * side {
+                    let place = [2.0 * x as f32 / width as f32 - 1.0, 2.0 * y as f32 / height as f32 - 1.0];
+                    let sample = develop.apply(samples[(row * samples_wide + column) as usize], place);
+                    sum = std::array::from_fn(|k| sum[k] + sample[k] * weight);
                 }
-                sum
-            })
-            .collect();
+            }
+            sum
+        };
+        let pixels = (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).map(|(x, y)| pixel(x, y)).collect();
         Self { width, height, pixels }
     }
 
-    /// Tone-mapped 8-bit sRGB over the backdrop.
-    fn to_srgb(&self, exposure: f32) -> Vec<u8> {
-        let gain = exposure.exp2();
+    /// 8-bit sRGB.
+    fn to_srgb(&self) -> Vec<u8> {
         let pixels = self.pixels.iter().enumerate();
         pixels
-            .flat_map(|(index, &[r, g, b, coverage])| {
-                let behind = BACKDROP * (1.0 - coverage);
-                let mapped = neutral([r, g, b].map(|c| c * gain + behind));
+            .flat_map(|(index, pixel)| {
                 let noise = dither(index as u32 % self.width, index as u32 / self.width);
-                mapped.map(|c| (srgb(c) * 255.0 + noise).clamp(0.0, 255.0) as u8)
+                pixel.map(|c| (srgb(c) * 255.0 + noise).clamp(0.0, 255.0) as u8)
             })
             .collect()
     }
@@ -119,11 +142,11 @@ impl Output {
     }
 
     /// Writes one picture, or an animation of several.
-    pub fn write(&self, frames: &[Picture], exposure: f32) -> Result<(), Error> {
+    pub fn write(&self, frames: &[Picture]) -> Result<(), Error> {
         let fail = |problem: String| Error::Output { path: self.path.clone(), problem };
         let mut file = NamedTempFile::new_in(&self.directory).map_err(|error| fail(format!("cannot be written: {error}")))?;
         match self.format {
-            Format::Png => write_png(&mut file, frames, exposure).map_err(|error| fail(error.to_string()))?,
+            Format::Png => write_png(&mut file, frames).map_err(|error| fail(error.to_string()))?,
             Format::Exr => write_exr(&mut file, &frames[0]).map_err(|error| fail(error.to_string()))?,
         }
         readable_by_all(file.as_file()).map_err(|error| fail(error.to_string()))?;
@@ -142,7 +165,7 @@ fn readable_by_all(file: &std::fs::File) -> std::io::Result<()> {
     file.sync_all()
 }
 
-fn write_png(file: &mut NamedTempFile, frames: &[Picture], exposure: f32) -> Result<(), png::EncodingError> {
+fn write_png(file: &mut NamedTempFile, frames: &[Picture]) -> Result<(), png::EncodingError> {
     let mut encoder = png::Encoder::new(BufWriter::new(file), frames[0].width, frames[0].height);
     encoder.set_color(png::ColorType::Rgb);
     encoder.set_depth(png::BitDepth::Eight);
@@ -153,7 +176,7 @@ fn write_png(file: &mut NamedTempFile, frames: &[Picture], exposure: f32) -> Res
     }
     let mut writer = encoder.write_header()?;
     for frame in frames {
-        writer.write_image_data(&frame.to_srgb(exposure))?;
+        writer.write_image_data(&frame.to_srgb())?;
     }
     writer.finish()
 }
@@ -162,7 +185,7 @@ fn write_exr(file: &mut NamedTempFile, picture: &Picture) -> exr::error::UnitRes
     use exr::prelude::{Image, SpecificChannels, WritableImage as _};
     let size = (picture.width as usize, picture.height as usize);
     let channels = SpecificChannels::rgb(|position: exr::math::Vec2<usize>| {
-        let [r, g, b, _] = picture.pixels[position.y() * size.0 + position.x()];
+        let [r, g, b] = picture.pixels[position.y() * size.0 + position.x()];
         (r, g, b)
     });
     let mut bytes = std::io::Cursor::new(Vec::new());
@@ -175,14 +198,17 @@ mod tests {
     use super::*;
 
     fn grey(level: f32) -> Picture {
-        Picture { width: 4, height: 3, pixels: vec![[level, level, level, 1.0]; 12] }
+        Picture { width: 4, height: 3, pixels: vec![[level; 3]; 12] }
     }
 
     #[test]
     fn samples_are_averaged() {
         let samples = [[0.0; 4], [2.0; 4], [4.0; 4], [6.0; 4]];
-        assert_eq!(Picture::from_samples(&samples, 2, 2), Picture { width: 1, height: 1, pixels: vec![[3.0; 4]] });
-        assert_eq!(Picture::from_samples(&samples, 2, 1).height, 2);
+        let one = Picture { width: 1, height: 1, pixels: vec![[3.0; 3]] };
+        assert_eq!(Picture::from_samples(&samples, 2, 2, Develop::Radiance), one);
+        assert_eq!(Picture::from_samples(&samples, 2, 1, Develop::Radiance).height, 2);
+        let display = Picture::from_samples(&samples, 2, 2, Develop::Display { exposure: 0.0 });
+        assert!(display.pixels[0].iter().all(|c| *c < 1.0));
     }
 
     #[test]
@@ -201,7 +227,7 @@ mod tests {
         let directory = tempfile::tempdir().unwrap();
         for name in ["grey.png", "grey.exr"] {
             let path = directory.path().join(name);
-            Output::new(&path).unwrap().write(&[grey(0.25)], 0.0).unwrap();
+            Output::new(&path).unwrap().write(&[grey(0.25)]).unwrap();
             assert!(std::fs::metadata(&path).unwrap().len() > 50);
         }
         assert_eq!(std::fs::read_dir(directory.path()).unwrap().count(), 2, "no temporary file stays behind");
@@ -214,8 +240,8 @@ mod tests {
         let directory = tempfile::tempdir().unwrap();
         let path = directory.path().join("a.exr");
         let mut picture = grey(0.0);
-        picture.pixels[5] = [1.5, 70_000.0, 1e-7, 1.0];
-        Output::new(&path).unwrap().write(std::slice::from_ref(&picture), 3.0).unwrap();
+        picture.pixels[5] = [1.5, 70_000.0, 1e-7];
+        Output::new(&path).unwrap().write(std::slice::from_ref(&picture)).unwrap();
         let read = exr::prelude::read_first_rgba_layer_from_file(
             &path,
             |size, _| vec![[0.0_f32; 4]; size.area()],

@@ -3,7 +3,7 @@
 use crate::cli::Render;
 use crate::error::Error;
 use crate::gpu::Gpu;
-use crate::picture::{Format, Output};
+use crate::picture::{Develop, Format, Output};
 use crate::scene::{Scene, SceneCamera};
 use crate::studio::Studio;
 use crate::{model, progress};
@@ -12,7 +12,7 @@ use std::f32::consts::TAU;
 use std::path::Path;
 use std::time::Instant;
 use translume::{
-    AmbientLight, BodyDescriptor, Camera, Deformation, DirectionalLight, Frame, Light, Lighting, LookAt, Medium, Method,
+    AmbientLight, BodyDescriptor, Camera, Deformation, DirectionalLight, Frame, Gloss, Light, Lighting, LookAt, Medium, Method,
     PointLight, Profile,
 };
 use translume_mesh::Mesh;
@@ -26,11 +26,14 @@ struct Setup {
     lights: Vec<Light>,
     camera: SceneCamera,
     morph: Vec<f32>,
+    gloss: Gloss,
 }
 
 /// Without units a model is taken to be as large as something held in a hand.
 const ASSUMED_DIAGONAL_MM: f32 = 100.0;
 const DEFAULT_SIZE: u32 = 768;
+/// Wax without a highlight looks dead.
+const DEFAULT_ROUGHNESS: f32 = 0.35;
 
 pub fn run(arguments: &Render) -> Result<(), Error> {
     let output = Output::new(&arguments.output)?;
@@ -61,6 +64,10 @@ pub fn run(arguments: &Render) -> Result<(), Error> {
     };
     let mut studio = Studio::new(gpu, &descriptor, setup.camera.width, setup.camera.height, arguments.samples)?;
     let camera = camera(&setup);
+    let develop = match output.format {
+        Format::Png => Develop::Display { exposure: arguments.exposure },
+        Format::Exr => Develop::Radiance,
+    };
     let bar = progress::bar("render");
     bar.set_length(arguments.frames.into());
     let start = Instant::now();
@@ -72,12 +79,12 @@ pub fn run(arguments: &Render) -> Result<(), Error> {
             deformation: Deformation::Morph(&weights),
             lighting: Lighting::Lights(&setup.lights),
         };
-        frames.push(studio.take(&frame, &camera)?);
+        frames.push(studio.take(&frame, &camera, setup.gloss, develop)?);
         bar.inc(1);
     }
     bar.finish_and_clear();
     let rendered = start.elapsed().as_secs_f32();
-    output.write(&frames, arguments.exposure)?;
+    output.write(&frames)?;
     progress::tell(&format!(
         "{}: {} triangles, 1 unit = {} mm, {} texels in {} charts; unwrapped in {unwrapped:.2} s, rendered in {rendered:.2} s on {}",
         mesh.name,
@@ -116,34 +123,39 @@ fn from_scene(path: &Path, arguments: &Render) -> Result<Setup, Error> {
     let (model, flat_normals) = scene.model(path)?;
     let mesh = &model.mesh;
     let mm_per_unit = arguments.mm_per_unit.unwrap_or(scene.length_unit.mm());
-    let mut camera = scene.camera.unwrap_or_else(|| frame_all(mesh, DEFAULT_SIZE));
+    let mut camera = scene.camera.unwrap_or_else(|| frame_all(mesh, DEFAULT_SIZE, &arguments.view));
     if let Some(width) = arguments.size {
         let height = (f64::from(width) * f64::from(camera.height) / f64::from(camera.width)).round() as u32;
         (camera.width, camera.height) = (width, height.max(1));
     }
     let lights = match &scene.lights {
         Some(lights) => lights.iter().map(|light| light.light(-1e-4 * mesh.diagonal())).collect(),
-        None => key_and_fill(mesh),
+        None => key_and_fill(mesh, &arguments.view),
     };
     let medium = match &arguments.medium {
         Some(name) => Medium::preset(name)?,
         None => scene.medium()?.unwrap_or_default(),
     };
     let morph = morph_weights(if arguments.morph.is_empty() { &scene.morph } else { &arguments.morph }, mesh)?;
-    Ok(Setup { flat_normals, medium, mm_per_unit, lights, camera, morph, model })
+    let gloss = gloss(arguments.gloss.unwrap_or(0.0))?;
+    Ok(Setup { flat_normals, medium, mm_per_unit, lights, camera, morph, gloss, model })
 }
 
 fn from_model(name: &str, arguments: &Render) -> Result<Setup, Error> {
     let medium = arguments.medium.as_deref().map(Medium::preset).transpose()?.unwrap_or(Medium::JADE);
-    let model = model::open(name)?;
+    let mut model = model::open(name)?;
+    if arguments.up == "z" {
+        model::turn_z_up(&mut model.mesh);
+    }
     let mesh = &model.mesh;
     Ok(Setup {
         flat_normals: false,
         medium,
         mm_per_unit: arguments.mm_per_unit.unwrap_or(ASSUMED_DIAGONAL_MM / mesh.diagonal()),
-        lights: key_and_fill(mesh),
-        camera: frame_all(mesh, arguments.size.unwrap_or(DEFAULT_SIZE)),
+        lights: key_and_fill(mesh, &arguments.view),
+        camera: frame_all(mesh, arguments.size.unwrap_or(DEFAULT_SIZE), &arguments.view),
         morph: morph_weights(&arguments.morph, mesh)?,
+        gloss: gloss(arguments.gloss.unwrap_or(DEFAULT_ROUGHNESS))?,
         model,
     })
 }
@@ -164,38 +176,52 @@ fn bounding_sphere(mesh: &Mesh) -> (Vec3, f32) {
     ((Vec3::from(low) + Vec3::from(high)) * 0.5, 0.5 * mesh.diagonal())
 }
 
-/// A little from above and from the side, the whole object in the picture.
-fn frame_all(mesh: &Mesh, size: u32) -> SceneCamera {
+fn gloss(roughness: f32) -> Result<Gloss, Error> {
+    match roughness {
+        0.0 => Ok(Gloss::None),
+        _ if (0.03..=1.0).contains(&roughness) => Ok(Gloss::Rough(roughness)),
+        _ => Err(Error::Option { option: "--gloss", problem: format!("{roughness} is neither 0 nor between 0.03 and 1") }),
+    }
+}
+
+/// From the object towards a camera at these degrees, and the frame around that direction turned with it.
+fn turned(view: &[f32], v: Vec3) -> Vec3 {
+    let [yaw, pitch] = [view[0].to_radians(), view[1].to_radians()];
+    Mat4::from_rotation_y(yaw).transform_vector3(Mat4::from_rotation_x(-pitch).transform_vector3(v))
+}
+
+/// The whole object in the picture.
+fn frame_all(mesh: &Mesh, size: u32, view: &[f32]) -> SceneCamera {
     const FOV_DEG: f32 = 26.0;
     let (middle, radius) = bounding_sphere(mesh);
     let distance = 0.92 * radius / (0.5 * FOV_DEG.to_radians()).sin();
-    let eye = middle + Vec3::new(0.24, 0.17, 1.0).normalize() * distance;
+    let eye = middle + turned(view, Vec3::Z) * distance;
     SceneCamera {
         eye: eye.to_array(),
         target: middle.to_array(),
-        up: [0.0, 1.0, 0.0],
+        up: turned(view, Vec3::Y).to_array(),
         fov_deg: FOV_DEG,
         width: size,
         height: size,
     }
 }
 
-/// A lamp behind that shines through what is thin, a soft key from the front, and a little sky.
-fn key_and_fill(mesh: &Mesh) -> Vec<Light> {
+/// Seen from the camera: a lamp behind that shines through what is thin, a key from the upper right, and a little sky.
+fn key_and_fill(mesh: &Mesh, view: &[f32]) -> Vec<Light> {
     let (middle, radius) = bounding_sphere(mesh);
-    let lamp = Vec3::new(-0.75, 1.0, -1.6) * radius * 1.5;
+    let lamp = turned(&[view[0], 0.0], Vec3::new(-0.75, 1.1, -1.5)) * radius * 1.5;
     vec![
         Light::Point(PointLight {
             position: (middle + lamp).to_array(),
-            intensity: [7.5, 7.0, 6.2].map(|c| c * lamp.length_squared()),
+            intensity: [7.5, 6.9, 6.0].map(|c| c * lamp.length_squared()),
             ..Default::default()
         }),
         Light::Directional(DirectionalLight {
-            to_light: [0.8, 0.9, 0.9],
-            irradiance: [0.75, 0.82, 0.95],
+            to_light: turned(&[view[0], 0.0], Vec3::new(0.9, 0.9, 0.75)).to_array(),
+            irradiance: [1.5, 1.6, 1.75],
             ..Default::default()
         }),
-        Light::Ambient(AmbientLight { radiance: [0.05, 0.06, 0.075], ..Default::default() }),
+        Light::Ambient(AmbientLight { radiance: [0.08, 0.09, 0.11], ..Default::default() }),
     ]
 }
 

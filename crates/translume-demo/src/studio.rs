@@ -2,9 +2,9 @@
 
 use crate::error::Error;
 use crate::gpu::Gpu;
-use crate::picture::Picture;
+use crate::picture::{Develop, Picture};
 use translume::{
-    Body, BodyDescriptor, Camera, Composite, CompositeTarget, CompositeView, Frame, Translume, readback, wgpu,
+    Body, BodyDescriptor, Camera, Composite, CompositeTarget, CompositeView, Frame, Gloss, Translume, readback, wgpu,
 };
 
 /// A body in front of a camera, off screen.
@@ -47,11 +47,11 @@ impl Studio {
         Ok(Self { gpu, body, composite, view, colour, depth, samples })
     }
 
-    /// Computes one frame and takes its picture: linear radiance, alpha is coverage.
-    pub fn take(&mut self, frame: &Frame<'_>, camera: &Camera) -> Result<Picture, Error> {
+    /// Computes one frame and takes its picture.
+    pub fn take(&mut self, frame: &Frame<'_>, camera: &Camera, gloss: Gloss, develop: Develop) -> Result<Picture, Error> {
         let Gpu { device, queue, .. } = &self.gpu;
         self.body.prepare(device, queue, frame)?;
-        self.view.prepare(queue, &self.body, camera);
+        self.view.prepare(queue, &self.body, camera, gloss);
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("frame") });
         self.body.encode(&mut encoder);
         {
@@ -78,7 +78,7 @@ impl Studio {
         }
         queue.submit([encoder.finish()]);
         let samples = readback::texture::<[f32; 4]>(device, queue, &self.colour, 0)?;
-        Ok(Picture::from_samples(&samples, self.colour.width(), self.samples))
+        Ok(Picture::from_samples(&samples, self.colour.width(), self.samples, develop))
     }
 
     /// The adapter's name, for messages.

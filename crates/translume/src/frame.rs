@@ -199,7 +199,7 @@ fn ambient_layout(ambient: &crate::AmbientLight, eta: f32) -> AmbientLayout {
         table[k / 4][k % 4] = value;
     }
     let axis = Vec3::from(ambient.axis).normalize_or(Vec3::Y).to_array();
-    AmbientLayout { radiance: ambient.radiance, padding: 0, axis, padding1: 0, table }
+    AmbientLayout { radiance: ambient.radiance, cone_cosine: ambient.half_angle.cos(), axis, padding: 0, table }
 }
 
 // `ShadowViewLayout` is written field by field above; its size is part of the uniform's contract with WGSL.

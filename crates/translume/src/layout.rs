@@ -40,9 +40,9 @@ pub(crate) struct LightLayout {
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub(crate) struct AmbientLayout {
     pub radiance: [f32; 3],
-    pub padding: u32,
+    pub cone_cosine: f32,
     pub axis: [f32; 3],
-    pub padding1: u32,
+    pub padding: u32,
     pub table: [[f32; 4]; 9],
 }
 
@@ -130,7 +130,8 @@ pub(crate) struct CompositeLayout {
     pub eye: [f32; 3],
     pub eta: f32,
     pub exit_scale: f32,
-    pub padding: [u32; 3],
+    pub roughness: f32,
+    pub padding: [u32; 2],
 }
 
 #[repr(C)]
@@ -184,7 +185,7 @@ mod tests {
     fn rust_and_wgsl_agree() {
         check!(DEFORM, "Deform", DeformLayout, [model, normal, vertex_count, target_count, winding, padding]);
         check!(GATHER, "Light", LightLayout, [vector, kind, colour, first_view, region_low, view_count, region_high, padding]);
-        check!(GATHER, "Ambient", AmbientLayout, [radiance, padding, axis, padding1, table]);
+        check!(GATHER, "Ambient", AmbientLayout, [radiance, cone_cosine, axis, padding, table]);
         check!(GATHER, "ShadowView", ShadowViewLayout, [matrix, texel, perspective, padding0, padding1]);
         check!(
             GATHER,
@@ -205,6 +206,7 @@ mod tests {
         let (members, span) = naga_layout(translume_shaders::COMPOSITE.source, "Composite");
         assert_eq!(members[1], ("eye".to_owned(), offset_of!(CompositeLayout, eye) as u32));
         assert_eq!(members[3], ("exit_scale".to_owned(), offset_of!(CompositeLayout, exit_scale) as u32));
+        assert_eq!(members[4], ("roughness".to_owned(), offset_of!(CompositeLayout, roughness) as u32));
         assert_eq!(span as usize, size_of::<CompositeLayout>());
     }
 

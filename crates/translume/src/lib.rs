@@ -54,7 +54,7 @@ pub use layout::Cluster;
 pub use light::{AmbientLight, DirectionalLight, Light, PointLight, Region};
 pub use medium::Medium;
 pub use profile::Profile;
-pub use stages::composite::{Composite, CompositeTarget, CompositeView};
+pub use stages::composite::{Composite, CompositeTarget, CompositeView, Gloss};
 pub use stages::scatter::Method;
 pub use stages::{Stage, StageSet};
 

@@ -1,4 +1,4 @@
-//! Composite: the camera's view of a body, L_o = F_t(η, ω_o)·B/π.
+//! Composite: the camera's view of a body, L_o = F_t(η, ω_o)·B/π, and what its surface reflects.
 //!
 //! reads  positions, normals, exitance texture       writes  the host's colour and depth attachments
 //! twin   `translume_reference::composite`           WGSL    `composite.wgsl`
@@ -31,6 +31,18 @@ impl Default for CompositeTarget {
     }
 }
 
+/// What the surface reflects before light enters.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub enum Gloss {
+    /// Nothing: the subsurface part alone, for a host that adds its own highlights and for comparison with references.
+    #[default]
+    None,
+    /// A dielectric of the medium's index of refraction with this roughness, 0.03 (polished) to 1 (matt). Reflects every light of the
+    /// frame, without shadows. A medium with index 1 reflects nothing.
+    Rough(f32),
+}
+
 /// Draws bodies into one kind of target.
 pub struct Composite {
     layout: wgpu::BindGroupLayout,
@@ -50,7 +62,7 @@ pub struct CompositeView {
 
 impl Composite {
     pub(crate) fn new(device: &wgpu::Device, target: CompositeTarget) -> Self {
-        let types = [UNIFORM, READ, READ, FLOAT_TEXTURE];
+        let types = [UNIFORM, READ, READ, FLOAT_TEXTURE, UNIFORM];
         let layout = gpu::layout(device, "composite", ShaderStages::VERTEX_FRAGMENT, &types);
         let module = gpu::module(device, translume_shaders::COMPOSITE);
         let pipeline = |flat| pipeline(device, &layout, &module, target, flat);
@@ -67,6 +79,7 @@ impl Composite {
             buffers.positions.as_entire_binding(),
             buffers.normals.as_entire_binding(),
             wgpu::BindingResource::TextureView(body.exitance_view()),
+            buffers.gather_uniform.as_entire_binding(),
         ];
         CompositeView {
             group: gpu::bind(device, "composite", &self.layout, &resources),
@@ -89,15 +102,20 @@ impl Composite {
 }
 
 impl CompositeView {
-    /// Takes over the camera, and the body's medium and profile.
-    pub fn prepare(&self, queue: &wgpu::Queue, body: &Body, camera: &Camera) {
+    /// Takes over the camera and the surface, and the body's medium and profile.
+    pub fn prepare(&self, queue: &wgpu::Queue, body: &Body, camera: &Camera, gloss: Gloss) {
         let to_world = Mat4::from_scale(Vec3::splat(1.0 / body.mm_per_unit));
         let uniform = CompositeLayout {
             view_projection: (Mat4::from_cols_array_2d(&camera.view_projection) * to_world).to_cols_array_2d(),
             eye: camera.eye.map(|x| x * body.mm_per_unit),
             eta: body.medium().ior,
             exit_scale: body.profile().exit_scale(body.medium().ior),
-            padding: [0; 3],
+            roughness: match gloss {
+                Gloss::None => 0.0,
+                // Below this the highlight of a point is smaller than a pixel and only flickers.
+                Gloss::Rough(roughness) => roughness.clamp(0.03, 1.0),
+            },
+            padding: [0; 2],
         };
         queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&uniform));
     }

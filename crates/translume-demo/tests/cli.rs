@@ -1,0 +1,216 @@
+//! The command as people use it: what it writes, and what it says when it cannot.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+const TETRAHEDRON: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n";
+
+struct Desk(tempfile::TempDir);
+
+impl Desk {
+    fn new() -> Self {
+        Self(tempfile::tempdir().unwrap())
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.0.path().join(name)
+    }
+
+    fn file(&self, name: &str, content: impl AsRef<[u8]>) -> String {
+        std::fs::write(self.path(name), content).unwrap();
+        self.path(name).to_str().unwrap().to_owned()
+    }
+
+    /// Names of all files that start with `stem`.
+    fn files(&self, stem: &str) -> Vec<String> {
+        let entries = std::fs::read_dir(self.0.path()).unwrap();
+        entries.map(|e| e.unwrap().file_name().into_string().unwrap()).filter(|name| name.starts_with(stem)).collect()
+    }
+}
+
+fn translume(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_translume")).args(arguments).env("RUST_LOG", "off").output().unwrap()
+}
+
+fn render(desk: &Desk, arguments: &[&str]) -> Output {
+    let output = desk.path("out.png");
+    let mut all = vec!["render"];
+    all.extend_from_slice(arguments);
+    all.extend_from_slice(&["-o", output.to_str().unwrap()]);
+    translume(&all)
+}
+
+/// Exit status 2, one line that holds every word, and no picture.
+fn check_refusal(desk: &Desk, output: &Output, words: &[&str]) -> Result<(), String> {
+    let text = String::from_utf8_lossy(&output.stderr).into_owned();
+    // Mesa complains about a missing XDG_RUNTIME_DIR in lines of its own.
+    let lines: Vec<_> = text.lines().filter(|line| line.starts_with("translume: ")).collect();
+    if output.status.code() != Some(2) {
+        return Err(format!("exit status {:?}: {text}", output.status));
+    }
+    if text.contains("panicked") || lines.len() != 1 {
+        return Err(format!("not one clear line: {text}"));
+    }
+    if let Some(word) = words.iter().find(|word| !lines[0].contains(**word)) {
+        return Err(format!("\"{word}\" is missing from: {}", lines[0]));
+    }
+    if desk.files("out").is_empty() && desk.files(".tmp").is_empty() {
+        Ok(())
+    } else {
+        Err("a picture was left behind".to_owned())
+    }
+}
+
+fn refused(desk: &Desk, arguments: &[&str], words: &[&str]) {
+    check_refusal(desk, &render(desk, arguments), words).unwrap_or_else(|problem| panic!("{arguments:?}: {problem}"));
+}
+
+#[test]
+fn files_that_cannot_be_rendered_are_named() {
+    let desk = Desk::new();
+    refused(&desk, &[desk.path("absent.obj").to_str().unwrap()], &["absent.obj"]);
+    refused(&desk, &[&desk.file("noise.obj", [0x89, b'P', b'N', b'G', 0, 1, 2, 255])], &["noise.obj", "mesh"]);
+    refused(&desk, &[&desk.file("letter.txt", "dear mesh")], &["letter.txt", "obj"]);
+    refused(&desk, &[&desk.file("cut.glb", b"glTF\x02\0\0\0\xff\0\0\0")], &["cut.glb"]);
+
+    let far = TETRAHEDRON.replace("f 1 4 3", "f 1 4 99");
+    refused(&desk, &[&desk.file("far.obj", far)], &["far.obj", "face 4", "99", "4"]);
+    let nan = TETRAHEDRON.replace("v 0 1 0", "v 0 nan 0");
+    refused(&desk, &[&desk.file("nan.obj", nan)], &["nan.obj", "vertex 3"]);
+    let flat = "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n";
+    refused(&desk, &[&desk.file("flat.obj", flat)], &["flat.obj", "area"]);
+}
+
+#[test]
+fn options_that_cannot_be_are_named() {
+    let desk = Desk::new();
+    let mesh = desk.file("ok.obj", TETRAHEDRON);
+    refused(&desk, &[&mesh, "--medium", "kryptonite"], &["kryptonite", "skimmilk"]);
+    refused(&desk, &[&mesh, "--profile", "tripole"], &["tripole", "dipole"]);
+    refused(&desk, &[&mesh, "--method", "magic"], &["magic", "tree"]);
+    refused(&desk, &[&mesh, "--atlas", "100000"], &["--atlas", "100000"]);
+    refused(&desk, &[&mesh, "--atlas", "3"], &["3"]);
+    refused(&desk, &[&mesh, "--size", "16000", "--samples", "8"], &["--size", "16000"]);
+    refused(&desk, &[&mesh, "--mm-per-unit", "0"], &["ok.obj", "mm per unit"]);
+    refused(&desk, &[&mesh, "--theta", "9"], &["opening angle 9"]);
+    refused(&desk, &[&mesh, "--morph", "0.5"], &["--morph", "0 morph targets"]);
+    refused(&desk, &["dodecahedron"], &["dodecahedron"]);
+    let scene = desk.file("scene.json", r#"{ "shape": { "type": "mesh", "file": "gone.obj" } }"#);
+    refused(&desk, &["--scene", &scene], &["gone.obj"]);
+}
+
+#[test]
+fn a_silent_failure_would_be_noticed() {
+    let desk = Desk::new();
+    let fine = render(&desk, &[&desk.file("ok.obj", TETRAHEDRON), "--atlas", "16", "--size", "8"]);
+    assert!(check_refusal(&desk, &fine, &[]).is_err(), "success is no refusal");
+}
+
+#[test]
+fn an_output_that_cannot_be_written_is_refused_before_the_work() {
+    let desk = Desk::new();
+    let mesh = desk.file("ok.obj", TETRAHEDRON);
+    for (name, word) in [("nowhere/out.png", "directory"), ("out.gif", ".png")] {
+        let path = desk.path(name);
+        let output = translume(&["render", &mesh, "-o", path.to_str().unwrap()]);
+        check_refusal(&desk, &output, &[name, word]).unwrap_or_else(|problem| panic!("{name}: {problem}"));
+    }
+}
+
+fn read_exr(path: &Path) -> (usize, Vec<[f32; 3]>) {
+    let image = exr::prelude::read_first_rgba_layer_from_file(
+        path,
+        |size, _| (size.width(), vec![[0.0_f32; 3]; size.area()]),
+        |(width, pixels), at, (r, g, b, _): (f32, f32, f32, f32)| pixels[at.y() * *width + at.x()] = [r, g, b],
+    )
+    .unwrap();
+    image.layer_data.channel_data.pixels
+}
+
+#[test]
+fn a_furnace_scene_shows_its_sky() {
+    let desk = Desk::new();
+    let scene = desk.file(
+        "furnace.json",
+        r#"{ "name": "furnace", "length_unit": "mm",
+             "shape": { "type": "sphere", "center": [0, 0, 0], "radius": 50 },
+             "material": { "sigma_s_prime": [11.6, 20.4, 14.9], "sigma_a": [0, 0, 0], "g": 0, "eta": 1 },
+             "lights": [{ "type": "constant_env", "radiance": [1, 1, 1] }],
+             "camera": { "eye": [0, 0, 300], "target": [0, 0, 0], "up": [0, 1, 0], "fov_deg": 20, "width": 40, "height": 20 } }"#,
+    );
+    let path = desk.path("furnace.exr");
+    let output = translume(&["render", "--scene", &scene, "--atlas", "64", "-o", path.to_str().unwrap()]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let (width, pixels) = read_exr(&path);
+    assert_eq!((width, pixels.len()), (40, 800));
+    let middle = pixels[10 * 40 + 20];
+    // 2 %: the furnace bound; the dipole itself loses 0.3 % to the curvature of this sphere.
+    assert!(middle.iter().all(|c| (c - 1.0).abs() < 0.02), "{middle:?}");
+    assert_eq!(pixels[0], [0.0; 3], "nothing is behind the body");
+}
+
+#[test]
+fn a_lit_region_ends_where_it_says() {
+    let desk = Desk::new();
+    let scene = desk.file(
+        "edge.json",
+        r#"{ "shape": { "type": "box", "min": [-20, -10, -20], "max": [20, 0, 20] },
+             "material": { "sigma_s_prime": [30, 30, 30], "sigma_a": [1, 1, 1], "eta": 1 },
+             "lights": [{ "type": "directional", "to_light": [0, 1, 0], "irradiance": [1, 1, 1],
+                          "lit_region": { "axis": "x", "min": 5 } }],
+             "camera": { "eye": [0, 100, 0], "target": [0, 0, 0], "up": [0, 0, -1], "fov_deg": 20, "width": 64, "height": 8 } }"#,
+    );
+    let path = desk.path("edge.exr");
+    let output = translume(&["render", "--scene", &scene, "--atlas", "128", "-o", path.to_str().unwrap()]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let (_, pixels) = read_exr(&path);
+    let row = &pixels[4 * 64..5 * 64];
+    let level = row[60][0];
+    let edge = (0..64).find(|&x| row[x][0] > 0.5 * level).unwrap();
+    // The picture is 35.3 mm wide: x = 5 mm lies at pixel 41.1; a texel is 0.6 mm, one pixel.
+    assert!((40..=42).contains(&edge), "{edge}");
+    assert!(row[20][0] < 0.02 * level, "dark means dark");
+}
+
+#[test]
+fn a_morph_becomes_an_animation() {
+    let desk = Desk::new();
+    let mesh = desk.file("ok.obj", TETRAHEDRON);
+    let path = desk.path("turn.png");
+    let arguments = ["render", &mesh, "--frames", "3", "--size", "16", "--atlas", "32", "-o", path.to_str().unwrap()];
+    assert!(translume(&arguments).status.success());
+    let mut reader = png::Decoder::new(std::io::BufReader::new(std::fs::File::open(&path).unwrap())).read_info().unwrap();
+    assert_eq!(reader.info().animation_control().unwrap().num_frames, 3);
+    let mut frames = Vec::new();
+    for _ in 0..3 {
+        let mut buffer = vec![0; reader.output_buffer_size().unwrap()];
+        reader.next_frame(&mut buffer).unwrap();
+        frames.push(buffer);
+    }
+    assert!(frames[0] != frames[1] && frames[1] != frames[2], "something moves");
+}
+
+#[test]
+fn inspect_counts() {
+    let desk = Desk::new();
+    let mesh = desk.file("ok.obj", TETRAHEDRON);
+    let output = translume(&["inspect", &mesh, "--json", "--atlas", "64"]);
+    assert!(output.status.success());
+    let value: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(value["triangles"], 4);
+    for key in ["charts", "utilisation", "area_cv", "area_ratio_p99", "flipped", "overlapping_texels", "seconds"] {
+        assert!(value[key].is_number(), "{key}");
+    }
+    let text = translume(&["inspect", &mesh, "--atlas", "64"]);
+    assert!(String::from_utf8_lossy(&text.stdout).contains("utilisation"));
+    assert_eq!(translume(&["inspect", "absent.obj"]).status.code(), Some(2));
+}
+
+#[test]
+fn help_shows_examples() {
+    for arguments in [&["--help"][..], &["render", "--help"]] {
+        let output = translume(arguments);
+        assert!(output.status.success());
+        assert!(String::from_utf8_lossy(&output.stdout).contains("translume render creature"));
+    }
+}

@@ -1,0 +1,140 @@
+//! The same scene for the CPU twins.
+
+use crate::Fixture;
+use glam::{DMat4, DVec3, Mat4};
+use translume::{Deformation, Frame, Light, Lighting, Medium, Region};
+use translume_reference::gather::{Gather, Source};
+use translume_reference::{Dipole, Surface, deform};
+
+/// Where a body is and how it is bent.
+#[derive(Clone, Debug)]
+pub struct Pose {
+    /// Model space to world space.
+    pub model: Mat4,
+    /// One weight per morph target.
+    pub weights: Vec<f32>,
+}
+
+impl Pose {
+    /// As loaded, for a mesh with this many morph targets.
+    #[must_use]
+    pub fn rest(targets: usize) -> Self {
+        Self { model: Mat4::IDENTITY, weights: vec![0.0; targets] }
+    }
+
+    /// The frame that shows this pose in this light.
+    #[must_use]
+    pub fn frame<'a>(&'a self, lights: &'a [Light]) -> Frame<'a> {
+        Frame {
+            model: self.model.to_cols_array_2d(),
+            deformation: Deformation::Morph(&self.weights),
+            lighting: Lighting::Lights(lights),
+        }
+    }
+}
+
+impl Fixture {
+    /// Vertex positions of a pose, mm.
+    #[must_use]
+    pub fn twin_positions(&self, pose: &Pose) -> Vec<[f64; 3]> {
+        let weights: Vec<f64> = pose.weights.iter().copied().map(f64::from).collect();
+        let model = pose.model.as_dmat4();
+        deform::positions(&self.model.mesh, &weights, 1.0)
+            .into_iter()
+            .map(|p| (model.transform_point3(p.into()) * self.mm_per_unit).to_array())
+            .collect()
+    }
+
+    /// Vertex normals of a pose. A mesh without morph targets keeps its own.
+    #[must_use]
+    pub fn twin_normals(&self, pose: &Pose, positions: &[[f64; 3]]) -> Vec<[f64; 3]> {
+        let model = pose.model.as_dmat4();
+        if self.model.mesh.targets.is_empty() {
+            let normal = DMat4::transpose(&model.inverse());
+            let turned = self.model.mesh.normals.iter().map(|n| normal.transform_vector3(DVec3::from(n.map(f64::from))));
+            return turned.map(|n| n.normalize().to_array()).collect();
+        }
+        let winding = model.determinant().signum();
+        deform::normals(&self.model.mesh, positions).into_iter().map(|n| n.map(|x| x * winding)).collect()
+    }
+
+    /// The surface of a pose that does not mirror.
+    #[must_use]
+    pub fn twin_surface(&self, pose: &Pose) -> Surface {
+        let positions = self.twin_positions(pose);
+        let normals = self.twin_normals(pose, &positions);
+        Surface::new(positions, normals, self.model.mesh.triangles.clone(), self.flat_normals)
+    }
+
+    /// What the twin gathers, averaged over `samples`² points of each texel.
+    #[must_use]
+    pub fn twin_sources(&self, pose: &Pose, lights: &[Light], samples: u32) -> Vec<Source> {
+        let rest = deform::positions(&self.model.mesh, &[], self.mm_per_unit);
+        let lights: Vec<_> = lights.iter().map(|each| light(each, self.mm_per_unit)).collect();
+        let gather = Gather {
+            atlas: &self.model.atlas,
+            rest: &rest,
+            mm_per_unit: self.mm_per_unit,
+            surface: &self.twin_surface(pose),
+            lights: &lights,
+            ior: f64::from(self.body.medium().ior),
+            samples,
+        };
+        gather.run()
+    }
+}
+
+/// A light in millimetres. Intensity is per steradian, so its irradiance over distance² takes the square of the scale.
+///
+/// # Panics
+/// For a kind of light the twins do not know.
+#[must_use]
+pub fn light(light: &Light, mm_per_unit: f64) -> translume_reference::Light {
+    use translume_reference::Light as Twin;
+    let mm = |p: [f32; 3]| p.map(|x| f64::from(x) * mm_per_unit);
+    let region = |region: Option<Region>| region.map(|r| (mm(r.low), mm(r.high)));
+    match light {
+        Light::Directional(light) => Twin::Directional {
+            to_light: DVec3::from(light.to_light.map(f64::from)).normalize().to_array(),
+            irradiance: light.irradiance.map(f64::from),
+            shadow: light.shadow,
+            region: region(light.region),
+        },
+        Light::Point(light) => Twin::Point {
+            position: mm(light.position),
+            intensity: light.intensity.map(|x| f64::from(x) * mm_per_unit * mm_per_unit),
+            shadow: light.shadow,
+            region: region(light.region),
+        },
+        Light::Ambient(light) => Twin::Ambient {
+            radiance: light.radiance.map(f64::from),
+            axis: DVec3::from(light.axis.map(f64::from)).normalize().to_array(),
+            half_angle: light.half_angle.into(),
+        },
+        other => panic!("the twins do not know {other:?}"),
+    }
+}
+
+/// The dipole of each channel.
+#[must_use]
+pub fn dipoles(medium: &Medium) -> [Dipole; 3] {
+    let twin = translume_reference::Medium {
+        sigma_s_prime: medium.sigma_s_prime.map(f64::from),
+        sigma_a: medium.sigma_a.map(f64::from),
+        ior: medium.ior.into(),
+    };
+    twin.dipoles()
+}
+
+/// Irradiance of sources.
+#[must_use]
+pub fn luminous(sources: &[Source]) -> Vec<[f64; 3]> {
+    sources.iter().map(|source| source.irradiance).collect()
+}
+
+/// Σ value · area over the texels.
+#[must_use]
+pub fn sum(values: &[[f64; 3]], sources: &[Source]) -> [f64; 3] {
+    let each = values.iter().zip(sources).map(|(value, source)| DVec3::from(*value) * source.area);
+    each.sum::<DVec3>().to_array()
+}

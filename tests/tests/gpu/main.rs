@@ -1,0 +1,10 @@
+//! Every stage on a real adapter against its CPU twin, then the whole against closed forms, hard cases and pictures.
+//! Figures in comments were measured on lavapipe (Mesa's software Vulkan), the least precise adapter at hand.
+
+#![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used, reason = "a failure here is a failed test")]
+
+mod cluster;
+mod deform;
+mod gather;
+mod scatter;
+mod shadow;
