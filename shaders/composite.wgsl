@@ -22,6 +22,8 @@ struct Composite {
 @group(0) @binding(2) var<storage, read> normals: array<vec4f>;
 @group(0) @binding(3) var exitance: texture_2d<f32>;
 @group(0) @binding(4) var<uniform> lighting: Gather;
+@group(0) @binding(5) var shadow_maps: texture_depth_2d_array;
+@group(0) @binding(6) var shadow_sampler: sampler_comparison;
 
 struct Fragment {
     @builtin(position) clip: vec4f,
@@ -39,13 +41,14 @@ fn vertex(@location(0) xref: u32, @location(1) uv: vec2f) -> Fragment {
 @fragment
 fn fragment(in: Fragment) -> @location(0) vec4f {
     let to_eye = normalize(composite.eye - in.position);
-    let face = cross(dpdx(in.position), dpdy(in.position));
-    let shading = normalize(select(in.normal, face, FLAT_NORMALS));
-    let normal = select(-shading, shading, dot(shading, to_eye) >= 0.0);
+    let cross_face = normalize(cross(dpdx(in.position), dpdy(in.position)));
+    let face = select(-cross_face, cross_face, dot(cross_face, to_eye) >= 0.0);
+    let shading = normalize(in.normal);
+    let normal = select(select(-shading, shading, dot(shading, to_eye) >= 0.0), face, FLAT_NORMALS);
     let transmitted = fresnel_transmittance(composite.eta, dot(normal, to_eye));
     var radiance = translume_exitance(exitance, in.uv) * (0.31830988 * composite.exit_scale * transmitted);
     if composite.roughness > 0.0 {
-        radiance += gloss(composite.roughness, in.position, normal, to_eye);
+        radiance += gloss(composite.roughness, in.position, normal, face, to_eye);
     }
     return vec4f(radiance, 1.0);
 }

@@ -10,7 +10,7 @@ struct Texel {
     area_ratio: f32,
 }
 
-@group(0) @binding(0) var<uniform> gather: Gather;
+@group(0) @binding(0) var<uniform> lighting: Gather;
 @group(0) @binding(1) var<storage, read> texels: array<Texel>;
 @group(0) @binding(2) var<storage, read> triangles: array<u32>;
 @group(0) @binding(3) var<storage, read> positions: array<vec4f>;
@@ -38,7 +38,7 @@ struct Receiver {
 @compute @workgroup_size(64)
 fn irradiance(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_index) local: u32) {
     let index = item_index(group, groups, local);
-    if index >= gather.texel_count { return; }
+    if index >= lighting.texel_count { return; }
     let texel = texels[index];
     let a = triangles[texel.triangle * 3u];
     let b = triangles[texel.triangle * 3u + 1u];
@@ -55,18 +55,18 @@ fn irradiance(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) grou
     let smooth_normal = safe_normalize(normals[a].xyz * inside.x + normals[b].xyz * inside.y + normals[c].xyz * inside.z, normals[a].xyz);
     var receiver: Receiver;
     receiver.position = pa * inside.x + pb * inside.y + pc * inside.z;
-    receiver.face = safe_normalize(doubled * gather.winding, smooth_normal);
-    receiver.normal = select(smooth_normal, receiver.face, gather.flat_normals == 1u);
+    receiver.face = safe_normalize(doubled * lighting.winding, smooth_normal);
+    receiver.normal = select(smooth_normal, receiver.face, lighting.flat_normals == 1u);
     let area = texel.area_ratio * 0.5 * doubled_area;
     receiver.half_width = 0.5 * sqrt(area);
     receiver.tangent = any_perpendicular(receiver.face);
     receiver.bitangent = cross(receiver.face, receiver.tangent);
 
     var light = vec3f(0.0);
-    for (var k = 0u; k < gather.light_count; k++) {
+    for (var k = 0u; k < lighting.light_count; k++) {
         light += direct(k, receiver);
     }
-    for (var k = 0u; k < gather.ambient_count; k++) {
+    for (var k = 0u; k < lighting.ambient_count; k++) {
         light += ambient(k, receiver.normal);
     }
     texel_positions[index] = vec4f(pa * weights.x + pb * weights.y + pc * weights.z, area);
@@ -75,9 +75,9 @@ fn irradiance(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) grou
 }
 
 fn direct(index: u32, receiver: Receiver) -> vec3f {
-    let kind = gather.lights[index].kind;
-    var to_light = gather.lights[index].vector;
-    var strength = gather.lights[index].colour;
+    let kind = lighting.lights[index].kind;
+    var to_light = lighting.lights[index].vector;
+    var strength = lighting.lights[index].colour;
     if kind == POINT {
         to_light -= receiver.position;
         // A light on the surface itself would be infinitely bright in one point: within the texel it shines as from its rim.
@@ -87,65 +87,41 @@ fn direct(index: u32, receiver: Receiver) -> vec3f {
     }
     let cosine = dot(receiver.normal, to_light);
     if cosine <= 0.0 { return vec3f(0.0); }
-    let entered = fresnel_transmittance(gather.eta, cosine) * cosine * region_fraction(index, receiver);
+    let entered = fresnel_transmittance(lighting.eta, cosine) * cosine * region_fraction(index, receiver);
     return strength * (entered * visibility(index, receiver, to_light));
 }
 
 // Part of the texel's square inside the box where the light enters.
 fn region_fraction(index: u32, receiver: Receiver) -> f32 {
     let extent = max(receiver.half_width * sqrt(max(vec3f(1.0) - receiver.face * receiver.face, vec3f(0.0))), vec3f(1e-6));
-    let low = clamp((receiver.position - gather.lights[index].region_low) / (2.0 * extent) + 0.5, vec3f(0.0), vec3f(1.0));
-    let high = clamp((gather.lights[index].region_high - receiver.position) / (2.0 * extent) + 0.5, vec3f(0.0), vec3f(1.0));
+    let low = clamp((receiver.position - lighting.lights[index].region_low) / (2.0 * extent) + 0.5, vec3f(0.0), vec3f(1.0));
+    let high = clamp((lighting.lights[index].region_high - receiver.position) / (2.0 * extent) + 0.5, vec3f(0.0), vec3f(1.0));
     let fraction = low * high;
     return fraction.x * fraction.y * fraction.z;
 }
 
+// Mean over the texel's square.
 fn visibility(index: u32, receiver: Receiver, to_light: vec3f) -> f32 {
-    let first = gather.lights[index].first_view;
-    if first == NO_SHADOW { return 1.0; }
-    var view = first;
-    if gather.lights[index].view_count == 6u { view += cube_face(-to_light); }
-    let matrix = gather.views[view].matrix;
-    let depth = mix(1.0, (matrix * vec4f(receiver.position, 1.0)).w, gather.views[view].perspective);
-    // Comparing with the four nearest texels of the map reaches one texel sideways along each axis; lifted by what the
-    // surface falls over that distance, a surface cannot shadow itself. The square of the texel lies in the plane of its
-    // triangle while the surface curves away: a tenth of its half width is the sagitta at a radius of five half widths.
-    let cosine = dot(receiver.face, to_light);
-    let reach = 1.4142136 * gather.views[view].texel * depth;
-    let lift = reach * (sqrt(max(1.0 - cosine * cosine, 0.0)) + 0.05) + 0.1 * receiver.half_width;
-    let lifted = receiver.position + receiver.face * lift;
+    if lighting.lights[index].first_view == NO_SHADOW { return 1.0; }
+    let view = shadow_view(index, to_light);
+    let lifted = lift(view, receiver.position, receiver.face, to_light, receiver.half_width);
     var lit = 0.0;
     let side = select(FOOTPRINT, 1u, receiver.half_width == 0.0);
     for (var v = 0u; v < side; v++) {
         for (var u = 0u; u < side; u++) {
             let offset = (2.0 * vec2f(f32(u), f32(v)) + 1.0) / f32(side) - 1.0;
-            let point = lifted + (receiver.tangent * offset.x + receiver.bitangent * offset.y) * receiver.half_width;
-            lit += compare(matrix, view, point);
+            lit += lit_at(view, lifted + (receiver.tangent * offset.x + receiver.bitangent * offset.y) * receiver.half_width);
         }
     }
     return lit / f32(side * side);
 }
 
-fn compare(matrix: mat4x4f, view: u32, point: vec3f) -> f32 {
-    let clip = matrix * vec4f(point, 1.0);
-    let ndc = clip.xyz / clip.w;
-    return textureSampleCompareLevel(shadow_maps, shadow_sampler, ndc.xy * vec2f(0.5, -0.5) + 0.5, view, ndc.z);
-}
-
-// Faces in the order +x, −x, +y, −y, +z, −z.
-fn cube_face(direction: vec3f) -> u32 {
-    let size = abs(direction);
-    if size.x >= size.y && size.x >= size.z { return select(1u, 0u, direction.x > 0.0); }
-    if size.y >= size.z { return select(3u, 2u, direction.y > 0.0); }
-    return select(5u, 4u, direction.z > 0.0);
-}
-
 fn ambient(index: u32, normal: vec3f) -> vec3f {
-    let x = clamp(dot(normal, gather.ambients[index].axis) * 0.5 + 0.5, 0.0, 1.0) * AMBIENT_INTERVALS;
+    let x = clamp(dot(normal, lighting.ambients[index].axis) * 0.5 + 0.5, 0.0, 1.0) * AMBIENT_INTERVALS;
     let cell = min(u32(x), u32(AMBIENT_INTERVALS) - 1u);
-    let low = gather.ambients[index].table[cell / 4u][cell % 4u];
-    let high = gather.ambients[index].table[(cell + 1u) / 4u][(cell + 1u) % 4u];
-    return gather.ambients[index].radiance * mix(low, high, x - f32(cell));
+    let low = lighting.ambients[index].table[cell / 4u][cell % 4u];
+    let high = lighting.ambients[index].table[(cell + 1u) / 4u][(cell + 1u) % 4u];
+    return lighting.ambients[index].radiance * mix(low, high, x - f32(cell));
 }
 
 fn safe_normalize(v: vec3f, fallback: vec3f) -> vec3f {

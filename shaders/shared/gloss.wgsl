@@ -1,5 +1,5 @@
 // Light that a rough dielectric surface throws back before it enters. Walter et al. 2007 (GGX), with the height-correlated
-// masking of Heitz 2014. Reflections are not shadowed. The including module declares the uniform `lighting`.
+// masking of Heitz 2014. The including module declares the uniform `lighting`.
 
 // Radiance reflected towards the eye for unit irradiance on a surface that faces the light.
 fn ggx(eta: f32, roughness: f32, normal: vec3f, to_eye: vec3f, to_light: vec3f) -> f32 {
@@ -17,7 +17,8 @@ fn ggx(eta: f32, roughness: f32, normal: vec3f, to_eye: vec3f, to_light: vec3f) 
     return distribution * masking * reflected * light_cosine;
 }
 
-fn gloss(roughness: f32, position: vec3f, normal: vec3f, to_eye: vec3f) -> vec3f {
+// face: normal of the triangle, which shadows follow
+fn gloss(roughness: f32, position: vec3f, normal: vec3f, face: vec3f, to_eye: vec3f) -> vec3f {
     var sum = vec3f(0.0);
     for (var k = 0u; k < lighting.light_count; k++) {
         var to_light = lighting.lights[k].vector;
@@ -28,7 +29,15 @@ fn gloss(roughness: f32, position: vec3f, normal: vec3f, to_eye: vec3f) -> vec3f
             to_light *= inverseSqrt(distance2);
             strength /= distance2;
         }
-        sum += strength * ggx(lighting.eta, roughness, normal, to_eye, to_light);
+        let reflected = ggx(lighting.eta, roughness, normal, to_eye, to_light);
+        if reflected > 0.0 {
+            var lit = 1.0;
+            if lighting.lights[k].first_view != NO_SHADOW {
+                let view = shadow_view(k, to_light);
+                lit = lit_at(view, lift(view, position, face, to_light, 0.0));
+            }
+            sum += strength * (reflected * lit);
+        }
     }
     let mirrored = reflect(-to_eye, normal);
     let reflected = 1.0 - fresnel_transmittance(lighting.eta, abs(dot(normal, to_eye)));

@@ -26,7 +26,14 @@ pub const DEFORM: Shader = shader!("deform", "shared/dispatch.wgsl", "deform.wgs
 /// Depth maps from lights.
 pub const SHADOW: Shader = shader!("shadow", "shadow.wgsl");
 /// Lights → position, normal, area, irradiance of every texel.
-pub const GATHER: Shader = shader!("gather", "shared/dispatch.wgsl", "shared/fresnel.wgsl", "shared/lights.wgsl", "gather.wgsl");
+pub const GATHER: Shader = shader!(
+    "gather",
+    "shared/dispatch.wgsl",
+    "shared/fresnel.wgsl",
+    "shared/lights.wgsl",
+    "shared/shadow_map.wgsl",
+    "gather.wgsl"
+);
 /// Texels → their tree of clusters.
 pub const CLUSTER: Shader = shader!("cluster", "shared/dispatch.wgsl", "shared/cluster.wgsl", "cluster.wgsl");
 /// Irradiance → radiant exitance.
@@ -35,8 +42,15 @@ pub const SCATTER: Shader =
 /// Dense texels → texture.
 pub const RESOLVE: Shader = shader!("resolve", "resolve.wgsl");
 /// The camera pass.
-pub const COMPOSITE: Shader =
-    shader!("composite", "shared/fresnel.wgsl", "shared/lights.wgsl", "shared/gloss.wgsl", "shared/exitance.wgsl", "composite.wgsl");
+pub const COMPOSITE: Shader = shader!(
+    "composite",
+    "shared/fresnel.wgsl",
+    "shared/lights.wgsl",
+    "shared/shadow_map.wgsl",
+    "shared/gloss.wgsl",
+    "shared/exitance.wgsl",
+    "composite.wgsl"
+);
 
 /// Every module, in the order light flows through them.
 pub const ALL: [Shader; 7] = [DEFORM, SHADOW, GATHER, CLUSTER, SCATTER, RESOLVE, COMPOSITE];

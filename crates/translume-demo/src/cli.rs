@@ -74,8 +74,8 @@ pub struct Render {
     #[arg(long, value_name = "X")]
     pub gloss: Option<f32>,
     /// Where the camera stands: degrees to the right of the front and upwards.
-    #[arg(long, value_name = "YAW,PITCH", value_delimiter = ',', num_args = 2, allow_negative_numbers = true, default_values_t = [14.0, 9.0])]
-    pub view: Vec<f32>,
+    #[arg(long, value_name = "YAW,PITCH", allow_hyphen_values = true, default_value = "14,9", value_parser = degrees)]
+    pub view: [f32; 2],
     /// Which axis of the model points up: y or z.
     #[arg(long, value_name = "AXIS", default_value = "y", value_parser = ["y", "z"])]
     pub up: String,
@@ -91,6 +91,15 @@ pub struct Render {
     /// Picture to write, .png or .exr.
     #[arg(short, long, value_name = "FILE")]
     pub output: PathBuf,
+}
+
+/// Two finite numbers with a comma between.
+fn degrees(text: &str) -> Result<[f32; 2], String> {
+    let number = |part: &str| part.trim().parse().ok().filter(|x: &f32| x.is_finite());
+    match text.split_once(',').map(|(yaw, pitch)| (number(yaw), number(pitch))) {
+        Some((Some(yaw), Some(pitch))) => Ok([yaw, pitch]),
+        _ => Err("give two numbers with a comma between, as 14,9".to_owned()),
+    }
 }
 
 /// `translume inspect`.

@@ -123,14 +123,14 @@ fn from_scene(path: &Path, arguments: &Render) -> Result<Setup, Error> {
     let (model, flat_normals) = scene.model(path)?;
     let mesh = &model.mesh;
     let mm_per_unit = arguments.mm_per_unit.unwrap_or(scene.length_unit.mm());
-    let mut camera = scene.camera.unwrap_or_else(|| frame_all(mesh, DEFAULT_SIZE, &arguments.view));
+    let mut camera = scene.camera.unwrap_or_else(|| frame_all(mesh, DEFAULT_SIZE, arguments.view));
     if let Some(width) = arguments.size {
         let height = (f64::from(width) * f64::from(camera.height) / f64::from(camera.width)).round() as u32;
         (camera.width, camera.height) = (width, height.max(1));
     }
     let lights = match &scene.lights {
         Some(lights) => lights.iter().map(|light| light.light(-1e-4 * mesh.diagonal())).collect(),
-        None => key_and_fill(mesh, &arguments.view),
+        None => key_and_fill(mesh, arguments.view),
     };
     let medium = match &arguments.medium {
         Some(name) => Medium::preset(name)?,
@@ -152,8 +152,8 @@ fn from_model(name: &str, arguments: &Render) -> Result<Setup, Error> {
         flat_normals: false,
         medium,
         mm_per_unit: arguments.mm_per_unit.unwrap_or(ASSUMED_DIAGONAL_MM / mesh.diagonal()),
-        lights: key_and_fill(mesh, &arguments.view),
-        camera: frame_all(mesh, arguments.size.unwrap_or(DEFAULT_SIZE), &arguments.view),
+        lights: key_and_fill(mesh, arguments.view),
+        camera: frame_all(mesh, arguments.size.unwrap_or(DEFAULT_SIZE), arguments.view),
         morph: morph_weights(&arguments.morph, mesh)?,
         gloss: gloss(arguments.gloss.unwrap_or(DEFAULT_ROUGHNESS))?,
         model,
@@ -185,21 +185,28 @@ fn gloss(roughness: f32) -> Result<Gloss, Error> {
 }
 
 /// From the object towards a camera at these degrees, and the frame around that direction turned with it.
-fn turned(view: &[f32], v: Vec3) -> Vec3 {
-    let [yaw, pitch] = [view[0].to_radians(), view[1].to_radians()];
+fn turned(view: [f32; 2], v: Vec3) -> Vec3 {
+    let [yaw, pitch] = view.map(f32::to_radians);
     Mat4::from_rotation_y(yaw).transform_vector3(Mat4::from_rotation_x(-pitch).transform_vector3(v))
 }
 
-/// The whole object in the picture.
-fn frame_all(mesh: &Mesh, size: u32, view: &[f32]) -> SceneCamera {
+/// The whole object in the picture, at rest and at each morph target.
+fn frame_all(mesh: &Mesh, size: u32, view: [f32; 2]) -> SceneCamera {
     const FOV_DEG: f32 = 26.0;
-    let (middle, radius) = bounding_sphere(mesh);
-    let distance = 0.92 * radius / (0.5 * FOV_DEG.to_radians()).sin();
-    let eye = middle + turned(view, Vec3::Z) * distance;
+    const FILLED: f32 = 0.86;
+    let (middle, _) = bounding_sphere(mesh);
+    let tangent = FILLED * (0.5 * FOV_DEG.to_radians()).tan();
+    let [right, up, back] = [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| turned(view, axis));
+    let rest = mesh.positions.iter().copied().map(Vec3::from);
+    let posed = mesh.targets.iter().flat_map(|target| mesh.positions.iter().zip(&target.position_deltas));
+    let distance = rest.chain(posed.map(|(p, d)| Vec3::from(*p) + Vec3::from(*d))).fold(0.0, |distance: f32, point| {
+        let offset = point - middle;
+        distance.max(offset.dot(right).abs().max(offset.dot(up).abs()) / tangent + offset.dot(back))
+    });
     SceneCamera {
-        eye: eye.to_array(),
+        eye: (middle + back * distance).to_array(),
         target: middle.to_array(),
-        up: turned(view, Vec3::Y).to_array(),
+        up: up.to_array(),
         fov_deg: FOV_DEG,
         width: size,
         height: size,
@@ -207,9 +214,9 @@ fn frame_all(mesh: &Mesh, size: u32, view: &[f32]) -> SceneCamera {
 }
 
 /// Seen from the camera: a lamp behind that shines through what is thin, a key from the upper right, and a little sky.
-fn key_and_fill(mesh: &Mesh, view: &[f32]) -> Vec<Light> {
+fn key_and_fill(mesh: &Mesh, view: [f32; 2]) -> Vec<Light> {
     let (middle, radius) = bounding_sphere(mesh);
-    let lamp = turned(&[view[0], 0.0], Vec3::new(-0.75, 1.1, -1.5)) * radius * 1.5;
+    let lamp = turned([view[0], 0.0], Vec3::new(-0.75, 1.1, -1.5)) * radius * 1.5;
     vec![
         Light::Point(PointLight {
             position: (middle + lamp).to_array(),
@@ -217,7 +224,7 @@ fn key_and_fill(mesh: &Mesh, view: &[f32]) -> Vec<Light> {
             ..Default::default()
         }),
         Light::Directional(DirectionalLight {
-            to_light: turned(&[view[0], 0.0], Vec3::new(0.9, 0.9, 0.75)).to_array(),
+            to_light: turned([view[0], 0.0], Vec3::new(0.9, 0.9, 0.75)).to_array(),
             irradiance: [1.5, 1.6, 1.75],
             ..Default::default()
         }),

@@ -51,7 +51,7 @@ impl Studio {
     pub fn take(&mut self, frame: &Frame<'_>, camera: &Camera, gloss: Gloss, develop: Develop) -> Result<Picture, Error> {
         let Gpu { device, queue, .. } = &self.gpu;
         self.body.prepare(device, queue, frame)?;
-        self.view.prepare(queue, &self.body, camera, gloss);
+        self.view.prepare(device, queue, &self.body, camera, gloss);
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("frame") });
         self.body.encode(&mut encoder);
         {

@@ -88,7 +88,7 @@ pub struct Body {
     exitance: wgpu::Texture,
     exitance_view: wgpu::TextureView,
     kernel_table: wgpu::Texture,
-    depth_maps: DepthMaps,
+    pub(crate) depth_maps: DepthMaps,
     deform_group: wgpu::BindGroup,
     gather_group: wgpu::BindGroup,
     cluster_group: wgpu::BindGroup,
@@ -135,7 +135,7 @@ impl Body {
         let table_view = kernel_table.create_view(&wgpu::TextureViewDescriptor::default());
         Ok(Self {
             deform_group: stages.deform.bind(device, &buffers),
-            gather_group: stages.gather.bind(device, &buffers, &depth_maps.sampled),
+            gather_group: stages.gather.bind(device, &buffers, &depth_maps),
             cluster_group: stages.cluster.bind(device, &buffers),
             scatter_group: stages.scatter.bind(device, &buffers, &table_view),
             resolve_group: stages.resolve.bind(device, &buffers.exitance, &buffers.pixels, &exitance_view),
@@ -346,7 +346,7 @@ impl Body {
     fn make_room_for_views(&mut self, device: &wgpu::Device, views: u32) {
         if views > self.depth_maps.layers() {
             self.depth_maps = self.stages.shadow.depth_maps(device, self.shadow_resolution, views);
-            self.gather_group = self.stages.gather.bind(device, &self.buffers, &self.depth_maps.sampled);
+            self.gather_group = self.stages.gather.bind(device, &self.buffers, &self.depth_maps);
         }
     }
 

@@ -3,7 +3,7 @@
 //! reads  positions, normals, exitance texture       writes  the host's colour and depth attachments
 //! twin   `translume_reference::composite`           WGSL    `composite.wgsl`
 
-use crate::gpu::{self, FLOAT_TEXTURE, READ, UNIFORM};
+use crate::gpu::{self, COMPARISON, DEPTH_MAPS, FLOAT_TEXTURE, READ, UNIFORM};
 use crate::layout::{AtlasVertexLayout, CompositeLayout};
 use crate::{Body, Camera};
 use glam::{Mat4, Vec3};
@@ -39,7 +39,7 @@ pub enum Gloss {
     #[default]
     None,
     /// A dielectric of the medium's index of refraction with this roughness, 0.03 (polished) to 1 (matt). Reflects every light of the
-    /// frame, without shadows. A medium with index 1 reflects nothing.
+    /// frame, with its shadows. A medium with index 1 reflects nothing.
     Rough(f32),
 }
 
@@ -53,7 +53,10 @@ pub struct Composite {
 /// One body seen by one camera.
 pub struct CompositeView {
     uniform: wgpu::Buffer,
+    layout: wgpu::BindGroupLayout,
     group: wgpu::BindGroup,
+    /// The depth maps that are bound; a body makes new ones when it gets more shadows.
+    depth_maps: wgpu::Texture,
     vertices: wgpu::Buffer,
     indices: wgpu::Buffer,
     index_count: u32,
@@ -62,7 +65,7 @@ pub struct CompositeView {
 
 impl Composite {
     pub(crate) fn new(device: &wgpu::Device, target: CompositeTarget) -> Self {
-        let types = [UNIFORM, READ, READ, FLOAT_TEXTURE, UNIFORM];
+        let types = [UNIFORM, READ, READ, FLOAT_TEXTURE, UNIFORM, DEPTH_MAPS, COMPARISON];
         let layout = gpu::layout(device, "composite", ShaderStages::VERTEX_FRAGMENT, &types);
         let module = gpu::module(device, translume_shaders::COMPOSITE);
         let pipeline = |flat| pipeline(device, &layout, &module, target, flat);
@@ -73,19 +76,13 @@ impl Composite {
     #[must_use]
     pub fn view(&self, device: &wgpu::Device, body: &Body) -> CompositeView {
         let uniform = gpu::uniform_buffer(device, "composite", size_of::<CompositeLayout>() as u64);
-        let buffers = &body.buffers;
-        let resources = [
-            uniform.as_entire_binding(),
-            buffers.positions.as_entire_binding(),
-            buffers.normals.as_entire_binding(),
-            wgpu::BindingResource::TextureView(body.exitance_view()),
-            buffers.gather_uniform.as_entire_binding(),
-        ];
         CompositeView {
-            group: gpu::bind(device, "composite", &self.layout, &resources),
+            group: bind(device, &self.layout, &uniform, body),
+            depth_maps: body.depth_maps.texture.clone(),
+            layout: self.layout.clone(),
             uniform,
-            vertices: buffers.atlas_vertices.clone(),
-            indices: buffers.atlas_indices.clone(),
+            vertices: body.buffers.atlas_vertices.clone(),
+            indices: body.buffers.atlas_indices.clone(),
             index_count: body.extent.triangles * 3,
             flat: body.flat_normals,
         }
@@ -102,8 +99,12 @@ impl Composite {
 }
 
 impl CompositeView {
-    /// Takes over the camera and the surface, and the body's medium and profile.
-    pub fn prepare(&self, queue: &wgpu::Queue, body: &Body, camera: &Camera, gloss: Gloss) {
+    /// Takes over the camera and the surface, and the body's medium and profile. Call it after [`Body::prepare`].
+    pub fn prepare(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, body: &Body, camera: &Camera, gloss: Gloss) {
+        if self.depth_maps != body.depth_maps.texture {
+            self.group = bind(device, &self.layout, &self.uniform, body);
+            self.depth_maps = body.depth_maps.texture.clone();
+        }
         let to_world = Mat4::from_scale(Vec3::splat(1.0 / body.mm_per_unit));
         let uniform = CompositeLayout {
             view_projection: (Mat4::from_cols_array_2d(&camera.view_projection) * to_world).to_cols_array_2d(),
@@ -119,6 +120,19 @@ impl CompositeView {
         };
         queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&uniform));
     }
+}
+
+fn bind(device: &wgpu::Device, layout: &wgpu::BindGroupLayout, uniform: &wgpu::Buffer, body: &Body) -> wgpu::BindGroup {
+    let resources = [
+        uniform.as_entire_binding(),
+        body.buffers.positions.as_entire_binding(),
+        body.buffers.normals.as_entire_binding(),
+        wgpu::BindingResource::TextureView(body.exitance_view()),
+        body.buffers.gather_uniform.as_entire_binding(),
+        wgpu::BindingResource::TextureView(&body.depth_maps.sampled),
+        wgpu::BindingResource::Sampler(&body.depth_maps.sampler),
+    ];
+    gpu::bind(device, "composite", layout, &resources)
 }
 
 fn pipeline(

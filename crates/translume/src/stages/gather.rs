@@ -4,36 +4,23 @@
 //! twin   `translume_reference::gather`                                  WGSL    `gather.wgsl`
 
 use crate::body::Buffers;
-use crate::gpu::{self, READ, UNIFORM, WRITE};
+use crate::stages::shadow::DepthMaps;
+use crate::gpu::{self, COMPARISON, DEPTH_MAPS, READ, UNIFORM, WRITE};
 
 pub(crate) struct Gather {
     layout: wgpu::BindGroupLayout,
     irradiance: wgpu::ComputePipeline,
-    sampler: wgpu::Sampler,
 }
 
 impl Gather {
     pub fn new(device: &wgpu::Device) -> Self {
-        let depth_maps = wgpu::BindingType::Texture {
-            sample_type: wgpu::TextureSampleType::Depth,
-            view_dimension: wgpu::TextureViewDimension::D2Array,
-            multisampled: false,
-        };
-        let comparison = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Comparison);
-        let types = [UNIFORM, READ, READ, READ, READ, WRITE, WRITE, WRITE, depth_maps, comparison];
+        let types = [UNIFORM, READ, READ, READ, READ, WRITE, WRITE, WRITE, DEPTH_MAPS, COMPARISON];
         let layout = gpu::layout(device, "gather", wgpu::ShaderStages::COMPUTE, &types);
         let module = gpu::module(device, translume_shaders::GATHER);
-        let sampler = device.create_sampler(&wgpu::SamplerDescriptor {
-            label: Some("depth map"),
-            mag_filter: wgpu::FilterMode::Linear,
-            min_filter: wgpu::FilterMode::Linear,
-            compare: Some(wgpu::CompareFunction::LessEqual),
-            ..Default::default()
-        });
-        Self { irradiance: gpu::compute_pipeline(device, &layout, &module, "irradiance"), layout, sampler }
+        Self { irradiance: gpu::compute_pipeline(device, &layout, &module, "irradiance"), layout }
     }
 
-    pub fn bind(&self, device: &wgpu::Device, buffers: &Buffers, depth_maps: &wgpu::TextureView) -> wgpu::BindGroup {
+    pub fn bind(&self, device: &wgpu::Device, buffers: &Buffers, depth_maps: &DepthMaps) -> wgpu::BindGroup {
         let resources = [
             buffers.gather_uniform.as_entire_binding(),
             buffers.texels.as_entire_binding(),
@@ -43,8 +30,8 @@ impl Gather {
             buffers.texel_positions.as_entire_binding(),
             buffers.texel_normals.as_entire_binding(),
             buffers.irradiance.as_entire_binding(),
-            wgpu::BindingResource::TextureView(depth_maps),
-            wgpu::BindingResource::Sampler(&self.sampler),
+            wgpu::BindingResource::TextureView(&depth_maps.sampled),
+            wgpu::BindingResource::Sampler(&depth_maps.sampler),
         ];
         gpu::bind(device, "gather", &self.layout, &resources)
     }

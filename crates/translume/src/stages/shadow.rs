@@ -34,6 +34,8 @@ pub(crate) struct View {
 pub(crate) struct DepthMaps {
     pub texture: wgpu::Texture,
     pub sampled: wgpu::TextureView,
+    /// Compares with the four nearest texels and blends the answers.
+    pub sampler: wgpu::Sampler,
     layers: Vec<wgpu::TextureView>,
     uniforms: wgpu::Buffer,
     group: wgpu::BindGroup,
@@ -168,7 +170,14 @@ impl Shadow {
         let layers = (0..layers).map(|layer| view(wgpu::TextureViewDimension::D2, layer, 1)).collect();
         let uniforms = gpu::uniform_buffer(device, "shadow views", UNIFORM_STRIDE * MAX_VIEWS as u64);
         let group = gpu::bind(device, "shadow", &self.layout, &[gpu::uniform_slot::<Mat4>(&uniforms)]);
-        DepthMaps { texture, sampled, layers, uniforms, group }
+        let sampler = device.create_sampler(&wgpu::SamplerDescriptor {
+            label: Some("depth maps"),
+            mag_filter: wgpu::FilterMode::Linear,
+            min_filter: wgpu::FilterMode::Linear,
+            compare: Some(wgpu::CompareFunction::LessEqual),
+            ..Default::default()
+        });
+        DepthMaps { texture, sampled, sampler, layers, uniforms, group }
     }
 
     pub fn encode(&self, encoder: &mut wgpu::CommandEncoder, maps: &DepthMaps, buffers: &Buffers, views: u32, indices: u32) {
