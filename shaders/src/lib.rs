@@ -37,8 +37,13 @@ pub const GATHER: Shader = shader!(
 /// Texels → their tree of clusters.
 pub const CLUSTER: Shader = shader!("cluster", "shared/dispatch.wgsl", "shared/cluster.wgsl", "cluster.wgsl");
 /// Irradiance → radiant exitance.
-pub const SCATTER: Shader =
-    shader!("scatter", "shared/dispatch.wgsl", "shared/cluster.wgsl", "shared/kernel_table.wgsl", "scatter.wgsl");
+pub const SCATTER: Shader = shader!(
+    "scatter",
+    "shared/dispatch.wgsl",
+    "shared/cluster.wgsl",
+    "shared/kernel_table.wgsl",
+    "scatter.wgsl"
+);
 /// Dense texels → texture.
 pub const RESOLVE: Shader = shader!("resolve", "resolve.wgsl");
 /// The camera pass.

@@ -5,7 +5,8 @@ use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
 use translume_shaders::{ALL, MATERIAL};
 
 fn validate(name: &str, source: &str) -> Result<(naga::Module, ModuleInfo), String> {
-    let module = naga::front::wgsl::parse_str(source).map_err(|e| e.emit_to_string_with_path(source, name))?;
+    let module =
+        naga::front::wgsl::parse_str(source).map_err(|e| e.emit_to_string_with_path(source, name))?;
     // No capability beyond core WebGPU.
     let mut validator = Validator::new(ValidationFlags::all(), Capabilities::default());
     let info = validator.validate(&module).map_err(|e| e.emit_to_string_with_path(source, name))?;
@@ -17,7 +18,8 @@ fn translate(name: &str, source: &str) -> Result<(), String> {
     let constants = naga::back::PipelineConstants::default();
     let (module, info) = naga::back::pipeline_constants::process_overrides(&module, &info, None, &constants)
         .map_err(|error| format!("{name}: overrides: {error}"))?;
-    spv::write_vec(&module, &info, &spv::Options::default(), None).map_err(|error| format!("{name}: SPIR-V: {error}"))?;
+    spv::write_vec(&module, &info, &spv::Options::default(), None)
+        .map_err(|error| format!("{name}: SPIR-V: {error}"))?;
     let metal = msl::Options { fake_missing_bindings: true, lang_version: (2, 4), ..Default::default() };
     msl::write_string(&module, &info, &metal, &msl::PipelineOptions::default())
         .map_err(|error| format!("{name}: Metal: {error}"))?;
@@ -51,7 +53,10 @@ fn a_broken_module_is_noticed() {
 fn no_module_needs_more_than_webgpu_lends() {
     for shader in ALL {
         let (module, _) = validate(shader.name, shader.source).unwrap();
-        let buffers = module.global_variables.iter().filter(|(_, v)| matches!(v.space, naga::AddressSpace::Storage { .. }));
+        let buffers = module
+            .global_variables
+            .iter()
+            .filter(|(_, v)| matches!(v.space, naga::AddressSpace::Storage { .. }));
         assert!(buffers.count() <= 8, "{}: more than 8 storage buffers", shader.name);
         for entry in &module.entry_points {
             assert!(entry.workgroup_size.iter().product::<u32>() <= 256, "{}: {}", shader.name, entry.name);

@@ -11,7 +11,11 @@ pub type Check = Result<(), String>;
 /// The figure and its bound, in words.
 pub fn at_most(what: &str, measured: f64, bound: f64) -> Check {
     eprintln!("{what}: {measured:.3e} (at most {bound:.1e})");
-    if measured <= bound { Ok(()) } else { Err(format!("{what} is {measured:e}, but may be {bound:e} at most")) }
+    if measured <= bound {
+        Ok(())
+    } else {
+        Err(format!("{what} is {measured:e}, but may be {bound:e} at most"))
+    }
 }
 
 /// A figure and the least it may be. NaN is too little.
@@ -20,7 +24,11 @@ pub fn at_most(what: &str, measured: f64, bound: f64) -> Check {
 /// The figure and its bound, in words.
 pub fn at_least(what: &str, measured: f64, bound: f64) -> Check {
     eprintln!("{what}: {measured:.3e} (at least {bound:.1e})");
-    if measured >= bound { Ok(()) } else { Err(format!("{what} is {measured:e}, but must be {bound:e} at least")) }
+    if measured >= bound {
+        Ok(())
+    } else {
+        Err(format!("{what} is {measured:e}, but must be {bound:e} at least"))
+    }
 }
 
 /// The check holds, or the test fails and names the adapter.

@@ -25,7 +25,9 @@ impl Gpu {
     fn new() -> Self {
         let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle().with_env());
         let adapter = pollster::block_on(wgpu::util::initialize_adapter_from_env(&instance, None))
-            .or_else(|_| pollster::block_on(instance.request_adapter(&wgpu::RequestAdapterOptions::default())))
+            .or_else(|_| {
+                pollster::block_on(instance.request_adapter(&wgpu::RequestAdapterOptions::default()))
+            })
             .expect("no graphics adapter; install a Vulkan, Metal or DX12 driver, or Mesa's lavapipe");
         let info = adapter.get_info();
         let adapter_name = format!("{} ({}, {})", info.name, info.backend, info.driver_info);
@@ -34,8 +36,10 @@ impl Gpu {
             required_limits: wgpu::Limits::default(),
             ..Default::default()
         };
-        let (device, queue) = pollster::block_on(adapter.request_device(&descriptor))
-            .unwrap_or_else(|error| panic!("[{adapter_name}] no device with WebGPU's default limits: {error}"));
+        let (device, queue) =
+            pollster::block_on(adapter.request_device(&descriptor)).unwrap_or_else(|error| {
+                panic!("[{adapter_name}] no device with WebGPU's default limits: {error}")
+            });
         let translume =
             Translume::new(&device).unwrap_or_else(|error| panic!("[{adapter_name}] no pipelines: {error}"));
         eprintln!("adapter: {adapter_name}");

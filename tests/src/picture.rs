@@ -61,8 +61,8 @@ impl Shot {
             samples: 1,
         };
         let composite = gpu().translume.composite(device, target);
-        let view = composite.view(device, &fixture.body);
-        view.prepare(&gpu().queue, &fixture.body, &self.camera(), translume::Gloss::default());
+        let mut view = composite.view(device, &fixture.body);
+        view.prepare(device, &gpu().queue, &fixture.body, &self.camera(), translume::Gloss::default());
         let colour = self.attachment(colour_format);
         let depth = self.attachment(depth_format);
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());

@@ -51,7 +51,12 @@ impl Fixture {
         let model = pose.model.as_dmat4();
         if self.model.mesh.targets.is_empty() {
             let normal = DMat4::transpose(&model.inverse());
-            let turned = self.model.mesh.normals.iter().map(|n| normal.transform_vector3(DVec3::from(n.map(f64::from))));
+            let turned = self
+                .model
+                .mesh
+                .normals
+                .iter()
+                .map(|n| normal.transform_vector3(DVec3::from(n.map(f64::from))));
             return turned.map(|n| n.normalize().to_array()).collect();
         }
         let winding = model.determinant().signum();

@@ -67,9 +67,9 @@ pub struct Render {
     /// Width of a shadow map in texels.
     #[arg(long, value_name = "N", default_value_t = 2048)]
     pub shadow: u32,
-    /// Samples per pixel along each axis.
-    #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u32).range(1..=8))]
-    pub samples: u32,
+    /// Samples per pixel along each axis. By default 2 for a PNG, and 1, the pixel's centre, for an EXR.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=8))]
+    pub samples: Option<u32>,
     /// Roughness of the surface's own reflection, 0.03 (polished) to 1 (matt); 0 for none. By default 0.35 for a model and 0 for a scene.
     #[arg(long, value_name = "X")]
     pub gloss: Option<f32>,

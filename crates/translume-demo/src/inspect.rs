@@ -47,13 +47,19 @@ pub fn run(arguments: &Inspect) -> Result<(), Error> {
         ("morph targets", mesh.targets.len().to_string()),
         ("bounds", format!("{low:?} to {high:?}, diagonal {:.4}", mesh.diagonal())),
         ("repairs", repairs.to_string()),
-        ("atlas", format!("{0} × {0}, {1} charts, {2} texels", atlas.size, report.charts, report.covered_texels)),
+        (
+            "atlas",
+            format!("{0} × {0}, {1} charts, {2} texels", atlas.size, report.charts, report.covered_texels),
+        ),
         ("utilisation", format!("{:.1} %", 100.0 * report.utilisation)),
         (
             "area distortion",
             format!("cv {:.4}, 99th percentile of the ratio {:.3}", report.area_cv, report.area_ratio_p99),
         ),
-        ("faults", format!("{} flipped triangles, {} overlapping texels", report.flipped, report.overlapping_texels)),
+        (
+            "faults",
+            format!("{} flipped triangles, {} overlapping texels", report.flipped, report.overlapping_texels),
+        ),
         ("seconds", format!("{:.2}", report.seconds)),
     ];
     for (name, value) in lines {

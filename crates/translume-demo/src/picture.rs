@@ -68,7 +68,8 @@ impl Picture {
             }
             sum
         };
-        let pixels = (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).map(|(x, y)| pixel(x, y)).collect();
+        let pixels =
+            (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).map(|(x, y)| pixel(x, y)).collect();
         Self { width, height, pixels }
     }
 
@@ -144,7 +145,8 @@ impl Output {
     /// Writes one picture, or an animation of several.
     pub fn write(&self, frames: &[Picture]) -> Result<(), Error> {
         let fail = |problem: String| Error::Output { path: self.path.clone(), problem };
-        let mut file = NamedTempFile::new_in(&self.directory).map_err(|error| fail(format!("cannot be written: {error}")))?;
+        let mut file = NamedTempFile::new_in(&self.directory)
+            .map_err(|error| fail(format!("cannot be written: {error}")))?;
         match self.format {
             Format::Png => write_png(&mut file, frames).map_err(|error| fail(error.to_string()))?,
             Format::Exr => write_exr(&mut file, &frames[0]).map_err(|error| fail(error.to_string()))?,

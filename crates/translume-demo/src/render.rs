@@ -12,8 +12,8 @@ use std::f32::consts::TAU;
 use std::path::Path;
 use std::time::Instant;
 use translume::{
-    AmbientLight, BodyDescriptor, Camera, Deformation, DirectionalLight, Frame, Gloss, Light, Lighting, LookAt, Medium, Method,
-    PointLight, Profile,
+    AmbientLight, BodyDescriptor, Camera, Deformation, DirectionalLight, Frame, Gloss, Light, Lighting,
+    LookAt, Medium, Method, PointLight, Profile,
 };
 use translume_mesh::Mesh;
 
@@ -62,7 +62,11 @@ pub fn run(arguments: &Render) -> Result<(), Error> {
         shadow_resolution: arguments.shadow,
         ..BodyDescriptor::new(mesh, &atlas)
     };
-    let mut studio = Studio::new(gpu, &descriptor, setup.camera.width, setup.camera.height, arguments.samples)?;
+    let samples = arguments.samples.unwrap_or(match output.format {
+        Format::Png => 2,
+        Format::Exr => 1,
+    });
+    let mut studio = Studio::new(gpu, &descriptor, setup.camera.width, setup.camera.height, samples)?;
     let camera = camera(&setup);
     let develop = match output.format {
         Format::Png => Develop::Display { exposure: arguments.exposure },
@@ -136,7 +140,8 @@ fn from_scene(path: &Path, arguments: &Render) -> Result<Setup, Error> {
         Some(name) => Medium::preset(name)?,
         None => scene.medium()?.unwrap_or_default(),
     };
-    let morph = morph_weights(if arguments.morph.is_empty() { &scene.morph } else { &arguments.morph }, mesh)?;
+    let morph =
+        morph_weights(if arguments.morph.is_empty() { &scene.morph } else { &arguments.morph }, mesh)?;
     let gloss = gloss(arguments.gloss.unwrap_or(0.0))?;
     Ok(Setup { flat_normals, medium, mm_per_unit, lights, camera, morph, gloss, model })
 }
@@ -162,7 +167,8 @@ fn from_model(name: &str, arguments: &Render) -> Result<Setup, Error> {
 
 fn morph_weights(given: &[f32], mesh: &Mesh) -> Result<Vec<f32>, Error> {
     if given.len() > mesh.targets.len() {
-        let problem = format!("{} weights, but {} has {} morph targets", given.len(), mesh.name, mesh.targets.len());
+        let problem =
+            format!("{} weights, but {} has {} morph targets", given.len(), mesh.name, mesh.targets.len());
         return Err(Error::Option { option: "--morph", problem });
     }
     let mut weights = given.to_vec();
@@ -180,7 +186,10 @@ fn gloss(roughness: f32) -> Result<Gloss, Error> {
     match roughness {
         0.0 => Ok(Gloss::None),
         _ if (0.03..=1.0).contains(&roughness) => Ok(Gloss::Rough(roughness)),
-        _ => Err(Error::Option { option: "--gloss", problem: format!("{roughness} is neither 0 nor between 0.03 and 1") }),
+        _ => Err(Error::Option {
+            option: "--gloss",
+            problem: format!("{roughness} is neither 0 nor between 0.03 and 1"),
+        }),
     }
 }
 
@@ -199,10 +208,11 @@ fn frame_all(mesh: &Mesh, size: u32, view: [f32; 2]) -> SceneCamera {
     let [right, up, back] = [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| turned(view, axis));
     let rest = mesh.positions.iter().copied().map(Vec3::from);
     let posed = mesh.targets.iter().flat_map(|target| mesh.positions.iter().zip(&target.position_deltas));
-    let distance = rest.chain(posed.map(|(p, d)| Vec3::from(*p) + Vec3::from(*d))).fold(0.0, |distance: f32, point| {
-        let offset = point - middle;
-        distance.max(offset.dot(right).abs().max(offset.dot(up).abs()) / tangent + offset.dot(back))
-    });
+    let distance =
+        rest.chain(posed.map(|(p, d)| Vec3::from(*p) + Vec3::from(*d))).fold(0.0, |distance: f32, point| {
+            let offset = point - middle;
+            distance.max(offset.dot(right).abs().max(offset.dot(up).abs()) / tangent + offset.dot(back))
+        });
     SceneCamera {
         eye: (middle + back * distance).to_array(),
         target: middle.to_array(),

@@ -172,7 +172,8 @@ impl Scene {
     pub fn read(path: &Path) -> Result<Self, Error> {
         let fail = |problem: String| Error::Scene { path: path.to_owned(), problem };
         let text = std::fs::read_to_string(path).map_err(|error| fail(format!("cannot be read: {error}")))?;
-        let scene: Self = serde_json::from_str(&text).map_err(|error| fail(format!("is not a scene: {error}")))?;
+        let scene: Self =
+            serde_json::from_str(&text).map_err(|error| fail(format!("is not a scene: {error}")))?;
         if scene.material.is_some() && scene.medium.is_some() {
             return Err(fail("has both `material` and `medium`; keep one".to_owned()));
         }
@@ -201,12 +202,17 @@ impl Scene {
                 Ok((model::open_file(&file)?, *normals == Normals::Flat))
             }
             // 20,480 triangles: no point of the surface is further than 0.02 % of the radius from the sphere.
-            Shape::Sphere { center, radius } => Ok((model::clean(builtin::sphere(*center, *radius, 5))?, false)),
+            Shape::Sphere { center, radius } => {
+                Ok((model::clean(builtin::sphere(*center, *radius, 5))?, false))
+            }
             Shape::Box { min, max } => Ok((model::clean(builtin::cuboid(*min, *max, [8; 3]))?, false)),
             Shape::Builtin { name, normals } => {
                 let mesh = builtin::builtin(name).ok_or_else(|| Error::Scene {
                     path: path.to_owned(),
-                    problem: format!("no built-in is called \"{name}\"; known are {}", builtin::NAMES.join(", ")),
+                    problem: format!(
+                        "no built-in is called \"{name}\"; known are {}",
+                        builtin::NAMES.join(", ")
+                    ),
                 })?;
                 Ok((model::clean(mesh)?, *normals == Normals::Flat))
             }
@@ -246,19 +252,23 @@ impl SceneLight {
     pub fn light(&self, just_below_y0: f32) -> Light {
         let region = |lit: &Option<LitRegion>| lit.as_ref().map(|lit| lit.region(just_below_y0));
         match self {
-            Self::Directional { to_light, irradiance, shadow, lit_region } => Light::Directional(DirectionalLight {
-                to_light: *to_light,
-                irradiance: *irradiance,
-                shadow: *shadow,
-                region: region(lit_region),
-            }),
+            Self::Directional { to_light, irradiance, shadow, lit_region } => {
+                Light::Directional(DirectionalLight {
+                    to_light: *to_light,
+                    irradiance: *irradiance,
+                    shadow: *shadow,
+                    region: region(lit_region),
+                })
+            }
             Self::Point { position, intensity, shadow, lit_region } => Light::Point(PointLight {
                 position: *position,
                 intensity: *intensity,
                 shadow: *shadow,
                 region: region(lit_region),
             }),
-            Self::ConstantEnv { radiance } => Light::Ambient(AmbientLight { radiance: *radiance, ..Default::default() }),
+            Self::ConstantEnv { radiance } => {
+                Light::Ambient(AmbientLight { radiance: *radiance, ..Default::default() })
+            }
             Self::CapEnv { radiance, axis, half_angle_deg } => Light::Ambient(AmbientLight {
                 radiance: *radiance,
                 axis: *axis,
@@ -294,7 +304,9 @@ mod tests {
             (r#"{ "shape": { "type": "pyramid" } }"#.to_owned(), "pyramid"),
             (format!(r#"{{ {SPHERE}, "lights": [{{ "type": "laser" }}] }}"#), "laser"),
             (
-                format!(r#"{{ {SPHERE}, "lights": [{{ "type": "constant_env", "radiance": [1,1,1], "tint": 1 }}] }}"#),
+                format!(
+                    r#"{{ {SPHERE}, "lights": [{{ "type": "constant_env", "radiance": [1,1,1], "tint": 1 }}] }}"#
+                ),
                 "tint",
             ),
             (format!(r#"{{ {SPHERE}, "length_unit": "inch" }}"#), "inch"),
@@ -307,7 +319,8 @@ mod tests {
 
     #[test]
     fn a_camera_without_direction_is_refused() {
-        let camera = r#""camera": { "eye": [0,0,0], "target": [0,0,0], "fov_deg": 20, "width": 8, "height": 8 }"#;
+        let camera =
+            r#""camera": { "eye": [0,0,0], "target": [0,0,0], "fov_deg": 20, "width": 8, "height": 8 }"#;
         assert!(read(&format!("{{ {SPHERE}, {camera} }}")).unwrap_err().to_string().contains("camera"));
     }
 

@@ -4,7 +4,8 @@ use crate::error::Error;
 use crate::gpu::Gpu;
 use crate::picture::{Develop, Picture};
 use translume::{
-    Body, BodyDescriptor, Camera, Composite, CompositeTarget, CompositeView, Frame, Gloss, Translume, readback, wgpu,
+    Body, BodyDescriptor, Camera, Composite, CompositeTarget, CompositeView, Frame, Gloss, Translume,
+    readback, wgpu,
 };
 
 /// A body in front of a camera, off screen.
@@ -23,7 +24,13 @@ impl Studio {
     const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 
     /// Uploads the body; pictures will be `width` × `height` pixels of `samples`² samples each.
-    pub fn new(gpu: Gpu, descriptor: &BodyDescriptor<'_>, width: u32, height: u32, samples: u32) -> Result<Self, Error> {
+    pub fn new(
+        gpu: Gpu,
+        descriptor: &BodyDescriptor<'_>,
+        width: u32,
+        height: u32,
+        samples: u32,
+    ) -> Result<Self, Error> {
         let limit = gpu.device.limits().max_texture_dimension_2d;
         if width.max(height) * samples > limit {
             let problem = format!(
@@ -48,11 +55,18 @@ impl Studio {
     }
 
     /// Computes one frame and takes its picture.
-    pub fn take(&mut self, frame: &Frame<'_>, camera: &Camera, gloss: Gloss, develop: Develop) -> Result<Picture, Error> {
+    pub fn take(
+        &mut self,
+        frame: &Frame<'_>,
+        camera: &Camera,
+        gloss: Gloss,
+        develop: Develop,
+    ) -> Result<Picture, Error> {
         let Gpu { device, queue, .. } = &self.gpu;
         self.body.prepare(device, queue, frame)?;
         self.view.prepare(device, queue, &self.body, camera, gloss);
-        let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("frame") });
+        let mut encoder =
+            device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("frame") });
         self.body.encode(&mut encoder);
         {
             let colour = self.colour.create_view(&wgpu::TextureViewDescriptor::default());
@@ -69,7 +83,10 @@ impl Studio {
                 })],
                 depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
                     view: &self.depth,
-                    depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(1.0), store: wgpu::StoreOp::Discard }),
+                    depth_ops: Some(wgpu::Operations {
+                        load: wgpu::LoadOp::Clear(1.0),
+                        store: wgpu::StoreOp::Discard,
+                    }),
                     stencil_ops: None,
                 }),
                 ..Default::default()

@@ -24,7 +24,10 @@ impl Desk {
     /// Names of all files that start with `stem`.
     fn files(&self, stem: &str) -> Vec<String> {
         let entries = std::fs::read_dir(self.0.path()).unwrap();
-        entries.map(|e| e.unwrap().file_name().into_string().unwrap()).filter(|name| name.starts_with(stem)).collect()
+        entries
+            .map(|e| e.unwrap().file_name().into_string().unwrap())
+            .filter(|name| name.starts_with(stem))
+            .collect()
     }
 }
 
@@ -62,14 +65,19 @@ fn check_refusal(desk: &Desk, output: &Output, words: &[&str]) -> Result<(), Str
 }
 
 fn refused(desk: &Desk, arguments: &[&str], words: &[&str]) {
-    check_refusal(desk, &render(desk, arguments), words).unwrap_or_else(|problem| panic!("{arguments:?}: {problem}"));
+    check_refusal(desk, &render(desk, arguments), words)
+        .unwrap_or_else(|problem| panic!("{arguments:?}: {problem}"));
 }
 
 #[test]
 fn files_that_cannot_be_rendered_are_named() {
     let desk = Desk::new();
     refused(&desk, &[desk.path("absent.obj").to_str().unwrap()], &["absent.obj"]);
-    refused(&desk, &[&desk.file("noise.obj", [0x89, b'P', b'N', b'G', 0, 1, 2, 255])], &["noise.obj", "mesh"]);
+    refused(
+        &desk,
+        &[&desk.file("noise.obj", [0x89, b'P', b'N', b'G', 0, 1, 2, 255])],
+        &["noise.obj", "mesh"],
+    );
     refused(&desk, &[&desk.file("letter.txt", "dear mesh")], &["letter.txt", "obj"]);
     refused(&desk, &[&desk.file("cut.glb", b"glTF\x02\0\0\0\xff\0\0\0")], &["cut.glb"]);
 
@@ -121,7 +129,9 @@ fn read_exr(path: &Path) -> (usize, Vec<[f32; 3]>) {
     let image = exr::prelude::read_first_rgba_layer_from_file(
         path,
         |size, _| (size.width(), vec![[0.0_f32; 3]; size.area()]),
-        |(width, pixels), at, (r, g, b, _): (f32, f32, f32, f32)| pixels[at.y() * *width + at.x()] = [r, g, b],
+        |(width, pixels), at, (r, g, b, _): (f32, f32, f32, f32)| {
+            pixels[at.y() * *width + at.x()] = [r, g, b]
+        },
     )
     .unwrap();
     image.layer_data.channel_data.pixels
@@ -177,9 +187,11 @@ fn a_morph_becomes_an_animation() {
     let desk = Desk::new();
     let mesh = desk.file("ok.obj", TETRAHEDRON);
     let path = desk.path("turn.png");
-    let arguments = ["render", &mesh, "--frames", "3", "--size", "16", "--atlas", "32", "-o", path.to_str().unwrap()];
+    let arguments =
+        ["render", &mesh, "--frames", "3", "--size", "16", "--atlas", "32", "-o", path.to_str().unwrap()];
     assert!(translume(&arguments).status.success());
-    let mut reader = png::Decoder::new(std::io::BufReader::new(std::fs::File::open(&path).unwrap())).read_info().unwrap();
+    let mut reader =
+        png::Decoder::new(std::io::BufReader::new(std::fs::File::open(&path).unwrap())).read_info().unwrap();
     assert_eq!(reader.info().animation_control().unwrap().num_frames, 3);
     let mut frames = Vec::new();
     for _ in 0..3 {
@@ -198,7 +210,9 @@ fn inspect_counts() {
     assert!(output.status.success());
     let value: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
     assert_eq!(value["triangles"], 4);
-    for key in ["charts", "utilisation", "area_cv", "area_ratio_p99", "flipped", "overlapping_texels", "seconds"] {
+    for key in
+        ["charts", "utilisation", "area_cv", "area_ratio_p99", "flipped", "overlapping_texels", "seconds"]
+    {
         assert!(value[key].is_number(), "{key}");
     }
     let text = translume(&["inspect", &mesh, "--atlas", "64"]);

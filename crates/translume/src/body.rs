@@ -33,7 +33,7 @@ pub struct BodyDescriptor<'a> {
     pub mm_per_unit: f32,
     /// Whether each triangle keeps its own normal instead of the smooth vertex normals.
     pub flat_normals: bool,
-    /// Width of a depth map in texels, 16..=8192.
+    /// Width of a depth map in texels, from 16 to the device's `max_texture_dimension_2d`.
     pub shadow_resolution: u32,
 }
 
@@ -81,8 +81,10 @@ pub struct Body {
     table_diagonal: f32,
     table: KernelTableLayout,
     pending: StageSet,
-    /// Whether the medium, the profile or the method changed since the last `prepare`.
-    medium_stale: bool,
+    /// Whether the kernel table no longer fits the medium, or the scatter uniforms the method.
+    scatter_stale: bool,
+    /// Whether light now enters the surface differently.
+    surface_stale: bool,
     never_prepared: bool,
 
     exitance: wgpu::Texture,
@@ -110,7 +112,7 @@ impl Body {
     ) -> Result<Self, Error> {
         let BodyDescriptor { mesh, atlas, medium, profile, method, mm_per_unit, .. } = *descriptor;
         buffers::validate(mesh, atlas)?;
-        validate_options(descriptor)?;
+        validate_options(descriptor, device.limits().max_texture_dimension_2d)?;
         let extent = Extent::new(mesh, atlas);
         extent.check(&device.limits())?;
 
@@ -160,7 +162,8 @@ impl Body {
             table_diagonal: 0.0,
             table,
             pending: StageSet::default(),
-            medium_stale: true,
+            scatter_stale: true,
+            surface_stale: true,
             never_prepared: true,
             exitance,
             exitance_view,
@@ -173,7 +176,12 @@ impl Body {
     ///
     /// # Errors
     /// [`Error::Frame`] names the light, weight or matrix that cannot be; the body then keeps its last frame.
-    pub fn prepare(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, frame: &Frame<'_>) -> Result<(), Error> {
+    pub fn prepare(
+        &mut self,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        frame: &Frame<'_>,
+    ) -> Result<(), Error> {
         let model = Mat4::from_cols_array_2d(&frame.model);
         frame::validate_model(model)?;
         let weights = self.weights_of(frame.deformation)?;
@@ -181,7 +189,7 @@ impl Body {
         frame::validate_lights(lights)?;
 
         let moved = self.never_prepared || model != self.model || weights != self.weights;
-        let relit = moved || self.medium_stale || lights != self.lights;
+        let relit = moved || self.surface_stale || lights != self.lights;
         let to_mm = Mat4::from_scale(Vec3::splat(self.mm_per_unit)) * model;
         let winding = to_mm.determinant().signum();
         let corners = self.bounds.corners(&weights, to_mm);
@@ -220,6 +228,7 @@ impl Body {
         self.lights.clear();
         self.lights.extend_from_slice(lights);
         self.never_prepared = false;
+        self.surface_stale = false;
         self.refresh_medium(queue);
         Ok(())
     }
@@ -236,7 +245,12 @@ impl Body {
         let stages = &self.stages;
         if pending.contains(Stage::Deform) {
             let mut pass = begin(encoder, "deform");
-            stages.deform.encode(&mut pass, &self.deform_group, self.extent.vertices, self.extent.targets > 0);
+            stages.deform.encode(
+                &mut pass,
+                &self.deform_group,
+                self.extent.vertices,
+                self.extent.targets > 0,
+            );
         }
         if pending.contains(Stage::Shadow) {
             let indices = self.extent.triangles * 3;
@@ -253,24 +267,28 @@ impl Body {
             stages.scatter.encode(&mut pass, &self.scatter_group, self.method, self.extent.texels);
         }
         if pending.contains(Stage::Resolve) {
-            stages.resolve.encode(&mut begin(encoder, "resolve"), &self.resolve_group, self.extent.atlas_size);
+            stages.resolve.encode(
+                &mut begin(encoder, "resolve"),
+                &self.resolve_group,
+                self.extent.atlas_size,
+            );
         }
     }
 
-    /// Changes the medium; the next frame gathers (the surface may refract differently) and scatters anew.
+    /// Changes the medium; the next frame scatters anew, and gathers too if the index of refraction changed.
     ///
     /// # Errors
     /// [`Error::Medium`] names the coefficient that cannot be.
     pub fn set_medium(&mut self, medium: Medium) -> Result<(), Error> {
         medium.validate()?;
-        self.medium_stale |= medium != self.medium;
+        self.scatter_stale |= medium != self.medium;
+        self.surface_stale |= medium.ior != self.medium.ior;
         self.medium = medium;
         Ok(())
     }
 
-    /// Changes the profile; the next frame scatters anew.
+    /// Changes the profile. Today's profiles differ in how light leaves towards the eye, so no stage has to run again.
     pub fn set_profile(&mut self, profile: Profile) {
-        self.medium_stale |= profile != self.profile;
         self.profile = profile;
     }
 
@@ -280,7 +298,7 @@ impl Body {
     /// [`Error::Frame`] for an opening angle outside its range.
     pub fn set_method(&mut self, method: Method) -> Result<(), Error> {
         validate_method(method)?;
-        self.medium_stale |= method != self.method;
+        self.scatter_stale |= method != self.method;
         self.method = method;
         Ok(())
     }
@@ -354,7 +372,7 @@ impl Body {
     fn refresh_medium(&mut self, queue: &wgpu::Queue) {
         let diagonal = frame::diagonal(&self.corners).max(f32::MIN_POSITIVE);
         let outgrown = !(0.25..=1.0).contains(&(diagonal / self.table_diagonal));
-        if !self.medium_stale && !outgrown {
+        if !self.scatter_stale && !outgrown {
             return;
         }
         let channels = [0, 1, 2].map(|channel| Dipole::new(&self.medium, channel));
@@ -367,12 +385,20 @@ impl Body {
         queue.write_texture(
             self.kernel_table.as_image_copy(),
             bytemuck::cast_slice(&texels),
-            wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(16 * table.columns), rows_per_image: None },
+            wgpu::TexelCopyBufferLayout {
+                offset: 0,
+                bytes_per_row: Some(16 * table.columns),
+                rows_per_image: None,
+            },
             self.kernel_table.size(),
         );
-        queue.write_buffer(&self.buffers.scatter_uniforms, 0, &Scatter::uniforms(self.scatter_layout(&channels)));
+        queue.write_buffer(
+            &self.buffers.scatter_uniforms,
+            0,
+            &Scatter::uniforms(self.scatter_layout(&channels)),
+        );
         self.pending.insert(StageSet::from_stage_on(Stage::Scatter));
-        self.medium_stale = false;
+        self.scatter_stale = false;
     }
 
     fn scatter_layout(&self, channels: &[Dipole; 3]) -> ScatterLayout {
@@ -380,7 +406,11 @@ impl Body {
             Method::Tree { theta } => theta,
             Method::AllPairs => 0.0,
         };
-        let z_r = channels.iter().filter(|dipole| dipole.total() > 0.0).map(|dipole| dipole.z_r as f32).fold(f32::MAX, f32::min);
+        let z_r = channels
+            .iter()
+            .filter(|dipole| dipole.total() > 0.0)
+            .map(|dipole| dipole.z_r as f32)
+            .fold(f32::MAX, f32::min);
         let mut offsets = [[0; 4]; 4];
         for (level, offset) in self.tree.offsets.iter().enumerate() {
             offsets[level / 4][level % 4] = *offset;
@@ -426,7 +456,12 @@ fn begin<'a>(encoder: &'a mut wgpu::CommandEncoder, label: &str) -> wgpu::Comput
     encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some(label), timestamp_writes: None })
 }
 
-fn texture(device: &wgpu::Device, label: &str, size: wgpu::Extent3d, usage: wgpu::TextureUsages) -> wgpu::Texture {
+fn texture(
+    device: &wgpu::Device,
+    label: &str,
+    size: wgpu::Extent3d,
+    usage: wgpu::TextureUsages,
+) -> wgpu::Texture {
     device.create_texture(&wgpu::TextureDescriptor {
         label: Some(label),
         size,
@@ -450,17 +485,18 @@ fn kernel_table_texture(device: &wgpu::Device, table: KernelTableLayout) -> wgpu
     texture(device, "kernel table", size, usage)
 }
 
-fn validate_options(descriptor: &BodyDescriptor<'_>) -> Result<(), Error> {
+fn validate_options(descriptor: &BodyDescriptor<'_>, limit: u32) -> Result<(), Error> {
     descriptor.medium.validate()?;
     validate_method(descriptor.method)?;
-    let fail = |problem: String, remedy| Err(Error::Body { mesh: descriptor.mesh.name.clone(), problem, remedy });
+    let fail =
+        |problem: String, remedy| Err(Error::Body { mesh: descriptor.mesh.name.clone(), problem, remedy });
     if !(descriptor.mm_per_unit > 0.0 && descriptor.mm_per_unit.is_finite()) {
         let problem = format!("{} mm per unit", descriptor.mm_per_unit);
         return fail(problem, "give a finite scale above 0");
     }
-    if !(16..=8192).contains(&descriptor.shadow_resolution) {
+    if !(16..=limit).contains(&descriptor.shadow_resolution) {
         let problem = format!("depth maps of {}²", descriptor.shadow_resolution);
-        return fail(problem, "give a resolution between 16 and 8192");
+        return fail(problem, "give a resolution between 16 and the device's max_texture_dimension_2d");
     }
     Ok(())
 }

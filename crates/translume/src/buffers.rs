@@ -1,10 +1,10 @@
 //! The GPU memory of a body.
 
+use crate::Error;
 use crate::gpu::{self, UNIFORM_STRIDE};
 use crate::layout::{AtlasVertexLayout, Cluster, DeformLayout, GatherLayout, TexelLayout};
 use crate::stages::cluster::Tree;
 use crate::stages::scatter::SOURCES_PER_DISPATCH;
-use crate::Error;
 use glam::Vec3;
 use translume_mesh::normals::NormalAdjacency;
 use translume_mesh::{Atlas, Mesh};
@@ -65,10 +65,22 @@ impl Extent {
         let needs = [
             ("atlas", "max_texture_dimension_2d", u64::from(self.atlas_size), texture, SMALLER_ATLAS),
             ("atlas", "max_storage_buffer_binding_size", pixels, binding, SMALLER_ATLAS),
-            ("texels", "max_storage_buffer_binding_size", 16 * u64::from(self.texels), binding, SMALLER_ATLAS),
+            (
+                "texels",
+                "max_storage_buffer_binding_size",
+                16 * u64::from(self.texels),
+                binding,
+                SMALLER_ATLAS,
+            ),
             ("clusters", "max_storage_buffer_binding_size", clusters, binding, SMALLER_ATLAS),
             ("mesh", "max_storage_buffer_binding_size", 24 * u64::from(self.vertices), binding, SMALLER_MESH),
-            ("mesh", "max_storage_buffer_binding_size", 12 * u64::from(self.triangles), binding, SMALLER_MESH),
+            (
+                "mesh",
+                "max_storage_buffer_binding_size",
+                12 * u64::from(self.triangles),
+                binding,
+                SMALLER_MESH,
+            ),
             ("morph targets", "max_storage_buffer_binding_size", deltas, binding, "use fewer morph targets"),
         ];
         for (what, limit, required, actual, remedy) in needs {
@@ -95,18 +107,24 @@ pub(crate) fn validate(mesh: &Mesh, atlas: &Atlas) -> Result<(), Error> {
     if mesh.normals.len() != vertices {
         return fail(format!("{} normals for {vertices} vertices", mesh.normals.len()), REPAIR);
     }
-    if let Some(vertex) = (0..vertices).find(|&v| !mesh.positions[v].iter().chain(&mesh.normals[v]).all(|x| x.is_finite())) {
+    if let Some(vertex) =
+        (0..vertices).find(|&v| !mesh.positions[v].iter().chain(&mesh.normals[v]).all(|x| x.is_finite()))
+    {
         return fail(format!("vertex {vertex} is not finite"), REPAIR);
     }
     if let Some(triangle) = mesh.triangles.iter().position(|t| t.iter().any(|&v| v as usize >= vertices)) {
         return fail(format!("triangle {triangle} uses a vertex beyond the {vertices} there are"), REPAIR);
     }
     for (k, target) in mesh.targets.iter().enumerate() {
-        if target.position_deltas.len() != vertices || !target.position_deltas.iter().flatten().all(|x| x.is_finite()) {
+        if target.position_deltas.len() != vertices
+            || !target.position_deltas.iter().flatten().all(|x| x.is_finite())
+        {
             return fail(format!("morph target {k} needs {vertices} finite deltas"), REPAIR);
         }
     }
-    if atlas.triangles.len() != mesh.triangles.len() || atlas.vertices.iter().any(|v| v.xref as usize >= vertices) {
+    if atlas.triangles.len() != mesh.triangles.len()
+        || atlas.vertices.iter().any(|v| v.xref as usize >= vertices)
+    {
         return fail("the atlas was built from another mesh".to_owned(), REBUILD);
     }
     if atlas.triangles.iter().flatten().any(|&v| v as usize >= atlas.vertices.len()) {
@@ -115,7 +133,9 @@ pub(crate) fn validate(mesh: &Mesh, atlas: &Atlas) -> Result<(), Error> {
     if atlas.pixels.len() != (atlas.size as usize).pow(2) {
         return fail(format!("the atlas has {} pixels for {}²", atlas.pixels.len(), atlas.size), REBUILD);
     }
-    if let Some(k) = atlas.texels.iter().position(|t| t.triangle as usize >= mesh.triangles.len() || !t.area.is_finite()) {
+    if let Some(k) =
+        atlas.texels.iter().position(|t| t.triangle as usize >= mesh.triangles.len() || !t.area.is_finite())
+    {
         return fail(format!("texel {k} of the atlas stands on no triangle"), REBUILD);
     }
     Ok(())
@@ -123,17 +143,21 @@ pub(crate) fn validate(mesh: &Mesh, atlas: &Atlas) -> Result<(), Error> {
 
 impl Buffers {
     pub fn new(device: &wgpu::Device, mesh: &Mesh, atlas: &Atlas, tree: &Tree) -> Self {
-        let storage = |label, content: &[u32]| gpu::buffer_with(device, label, BufferUsages::STORAGE, content);
+        let storage =
+            |label, content: &[u32]| gpu::buffer_with(device, label, BufferUsages::STORAGE, content);
         let floats = |label, content: &[f32]| gpu::buffer_with(device, label, BufferUsages::STORAGE, content);
         let vectors = |label, count: usize| gpu::buffer(device, label, 16 * count as u64);
         let extent = Extent::new(mesh, atlas);
 
-        let rest: Vec<f32> = mesh.positions.iter().zip(&mesh.normals).flat_map(|(p, n)| p.iter().chain(n)).copied().collect();
-        let deltas: Vec<f32> = mesh.targets.iter().flat_map(|target| target.position_deltas.iter().flatten()).copied().collect();
+        let rest: Vec<f32> =
+            mesh.positions.iter().zip(&mesh.normals).flat_map(|(p, n)| p.iter().chain(n)).copied().collect();
+        let deltas: Vec<f32> =
+            mesh.targets.iter().flat_map(|target| target.position_deltas.iter().flatten()).copied().collect();
         let triangles: Vec<u32> = mesh.triangles.iter().flatten().copied().collect();
         let adjacency = NormalAdjacency::build(mesh);
         let adjacency: Vec<u32> = adjacency.offsets.iter().chain(&adjacency.triangles).copied().collect();
-        let atlas_vertices: Vec<_> = atlas.vertices.iter().map(|v| AtlasVertexLayout { xref: v.xref, uv: v.uv }).collect();
+        let atlas_vertices: Vec<_> =
+            atlas.vertices.iter().map(|v| AtlasVertexLayout { xref: v.xref, uv: v.uv }).collect();
         let atlas_indices: Vec<u32> = atlas.triangles.iter().flatten().copied().collect();
         let dispatches = extent.texels.div_ceil(SOURCES_PER_DISPATCH).max(1);
 
@@ -148,7 +172,12 @@ impl Buffers {
             rest: floats("rest pose", &rest),
             deltas: floats("morph deltas", &deltas),
             weights: gpu::buffer(device, "morph weights", 4 * u64::from(extent.targets)),
-            triangles: gpu::buffer_with(device, "triangles", BufferUsages::STORAGE | BufferUsages::INDEX, &triangles),
+            triangles: gpu::buffer_with(
+                device,
+                "triangles",
+                BufferUsages::STORAGE | BufferUsages::INDEX,
+                &triangles,
+            ),
             adjacency: storage("adjacency", &adjacency),
             positions,
             normals: vectors("normals", mesh.positions.len()),
@@ -157,8 +186,17 @@ impl Buffers {
             texel_positions: vectors("texel positions", atlas.texels.len()),
             texel_normals: vectors("texel normals", atlas.texels.len()),
             irradiance: vectors("irradiance", atlas.texels.len()),
-            cluster_uniforms: gpu::buffer_with(device, "cluster levels", BufferUsages::UNIFORM, &tree.uniforms()),
-            clusters: gpu::buffer(device, "clusters", u64::from(tree.clusters()) * size_of::<Cluster>() as u64),
+            cluster_uniforms: gpu::buffer_with(
+                device,
+                "cluster levels",
+                BufferUsages::UNIFORM,
+                &tree.uniforms(),
+            ),
+            clusters: gpu::buffer(
+                device,
+                "clusters",
+                u64::from(tree.clusters()) * size_of::<Cluster>() as u64,
+            ),
             scatter_uniforms: gpu::uniform_buffer(device, "scatter", UNIFORM_STRIDE * u64::from(dispatches)),
             exitance: vectors("exitance", atlas.texels.len()),
             pixels: storage("pixels", &atlas.pixels),
@@ -179,7 +217,11 @@ fn texel_layouts(mesh: &Mesh, atlas: &Atlas) -> Vec<TexelLayout> {
             triangle: texel.triangle,
             barycentric_1: texel.barycentric[0],
             barycentric_2: texel.barycentric[1],
-            area_ratio: if texel.area > 0.0 { texel.area / area(texel.triangle).max(f32::MIN_POSITIVE) } else { 0.0 },
+            area_ratio: if texel.area > 0.0 {
+                texel.area / area(texel.triangle).max(f32::MIN_POSITIVE)
+            } else {
+                0.0
+            },
         })
         .collect()
 }

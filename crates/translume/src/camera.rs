@@ -55,7 +55,8 @@ mod tests {
             near: 0.1,
             far: 100.0,
         });
-        let ndc = glam::Mat4::from_cols_array_2d(&camera.view_projection).project_point3(Vec3::new(10.0, 5.0, 0.0));
+        let ndc =
+            glam::Mat4::from_cols_array_2d(&camera.view_projection).project_point3(Vec3::new(10.0, 5.0, 0.0));
         assert!((ndc.x - 1.0).abs() < 1e-5 && (ndc.y - 1.0).abs() < 1e-5, "{ndc}");
     }
 }

@@ -1,7 +1,8 @@
 //! What changes from frame to frame, and its translation into uniforms.
 
 use crate::layout::{
-    AmbientLayout, GatherLayout, LightLayout, MAX_AMBIENTS, MAX_LIGHTS, MAX_VIEWS, NO_SHADOW, ShadowViewLayout,
+    AmbientLayout, GatherLayout, LightLayout, MAX_AMBIENTS, MAX_LIGHTS, MAX_VIEWS, NO_SHADOW,
+    ShadowViewLayout,
 };
 use crate::stages::shadow::{self, View};
 use crate::{Error, Light, light};
@@ -99,7 +100,8 @@ pub(crate) fn validate_lights(lights: &[Light]) -> Result<(), Error> {
         light.validate(index)?;
     }
     let ambients = lights.iter().filter(|light| matches!(light, Light::Ambient(_))).count();
-    let limits = [(lights.len() - ambients, MAX_LIGHTS, "directional and point"), (ambients, MAX_AMBIENTS, "ambient")];
+    let limits =
+        [(lights.len() - ambients, MAX_LIGHTS, "directional and point"), (ambients, MAX_AMBIENTS, "ambient")];
     for (count, limit, kind) in limits {
         if count > limit {
             return Err(Error::Frame {
@@ -134,7 +136,10 @@ pub(crate) struct GatherBody<'a> {
 }
 
 /// Lights and their depth maps' views, as WGSL reads them.
-pub(crate) fn gather_layout(lights: &[Light], body: &GatherBody<'_>) -> Result<(Box<GatherLayout>, Vec<View>), Error> {
+pub(crate) fn gather_layout(
+    lights: &[Light],
+    body: &GatherBody<'_>,
+) -> Result<(Box<GatherLayout>, Vec<View>), Error> {
     let mut layout: Box<GatherLayout> = bytemuck::zeroed_box();
     layout.texel_count = body.texels;
     layout.flat_normals = u32::from(body.flat_normals);
@@ -149,7 +154,8 @@ pub(crate) fn gather_layout(lights: &[Light], body: &GatherBody<'_>) -> Result<(
         }
         let own = shadow::views(light, body.mm_per_unit, body.corners, body.shadow_resolution);
         let first = if own.is_empty() { NO_SHADOW } else { views.len() as u32 };
-        layout.lights[layout.light_count as usize] = light_layout(light, body.mm_per_unit, first, own.len() as u32);
+        layout.lights[layout.light_count as usize] =
+            light_layout(light, body.mm_per_unit, first, own.len() as u32);
         layout.light_count += 1;
         views.extend(own);
     }
@@ -199,7 +205,13 @@ fn ambient_layout(ambient: &crate::AmbientLight, eta: f32) -> AmbientLayout {
         table[k / 4][k % 4] = value;
     }
     let axis = Vec3::from(ambient.axis).normalize_or(Vec3::Y).to_array();
-    AmbientLayout { radiance: ambient.radiance, cone_cosine: ambient.half_angle.cos(), axis, padding: 0, table }
+    AmbientLayout {
+        radiance: ambient.radiance,
+        cone_cosine: ambient.half_angle.cos(),
+        axis,
+        padding: 0,
+        table,
+    }
 }
 
 // `ShadowViewLayout` is written field by field above; its size is part of the uniform's contract with WGSL.
@@ -217,7 +229,10 @@ mod tests {
             positions: vec![[0.0; 3], [1.0, 2.0, 3.0]],
             normals: vec![[0.0, 1.0, 0.0]; 2],
             triangles: vec![],
-            targets: vec![MorphTarget { name: String::new(), position_deltas: vec![[5.0, 0.0, 0.0], [-4.0, 0.0, 0.0]] }],
+            targets: vec![MorphTarget {
+                name: String::new(),
+                position_deltas: vec![[5.0, 0.0, 0.0], [-4.0, 0.0, 0.0]],
+            }],
         }
     }
 
@@ -232,7 +247,11 @@ mod tests {
                 assert!(posed.cmpge(low - 1e-5).all() && posed.cmple(high + 1e-5).all(), "{weight}: {posed}");
             }
         }
-        assert_eq!(bounds.corners(&[0.0], Mat4::IDENTITY)[7], Vec3::new(1.0, 2.0, 3.0), "the rest box is tight");
+        assert_eq!(
+            bounds.corners(&[0.0], Mat4::IDENTITY)[7],
+            Vec3::new(1.0, 2.0, 3.0),
+            "the rest box is tight"
+        );
     }
 
     #[test]

@@ -158,7 +158,8 @@ mod tests {
             let rho = a * ((f64::from(i) + 0.5) / f64::from(rings)).sqrt();
             for k in 0..spokes {
                 let angle = PI * (f64::from(k) + 0.5) / f64::from(spokes);
-                let d2 = if facing { r * r + rho * rho } else { r * r + rho * rho - 2.0 * r * rho * angle.cos() };
+                let d2 =
+                    if facing { r * r + rho * rho } else { r * r + rho * rho - 2.0 * r * rho * angle.cos() };
                 let d = d2.sqrt();
                 sum += dipole.scaled_reflectance(d) * (-dipole.sigma_tr * d).exp();
             }
@@ -232,7 +233,8 @@ mod tests {
                 // Where a disc's rim passes over the receiver no smooth table follows, and where light dies out across a disc its
                 // mean says little: the tree opens such clusters.
                 if exact > -30.0 && !(0.4..2.0).contains(&(r / a)) && dipole.sigma_tr * a < 1.0 {
-                    let corners = at(row, column) + at(row, column + 1) + at(row + 1, column) + at(row + 1, column + 1);
+                    let corners =
+                        at(row, column) + at(row, column + 1) + at(row + 1, column) + at(row + 1, column + 1);
                     worst = worst.max((0.25 * corners + shift - exact).abs());
                 }
             }
@@ -247,6 +249,9 @@ mod tests {
             let error = interpolation_error(layout, &dipole(&medium), 0.0);
             assert!(error < 5e-3, "{medium:?}: {error}");
         }
-        assert!(interpolation_error(layout, &dipole(&Medium::MARBLE), 0.01) > 5e-3, "a shifted table must be noticed");
+        assert!(
+            interpolation_error(layout, &dipole(&Medium::MARBLE), 0.01) > 5e-3,
+            "a shifted table must be noticed"
+        );
     }
 }

@@ -184,14 +184,31 @@ mod tests {
     #[test]
     fn rust_and_wgsl_agree() {
         check!(DEFORM, "Deform", DeformLayout, [model, normal, vertex_count, target_count, winding, padding]);
-        check!(GATHER, "Light", LightLayout, [vector, kind, colour, first_view, region_low, view_count, region_high, padding]);
+        check!(
+            GATHER,
+            "Light",
+            LightLayout,
+            [vector, kind, colour, first_view, region_low, view_count, region_high, padding]
+        );
         check!(GATHER, "Ambient", AmbientLayout, [radiance, cone_cosine, axis, padding, table]);
         check!(GATHER, "ShadowView", ShadowViewLayout, [matrix, texel, perspective, padding0, padding1]);
         check!(
             GATHER,
             "Gather",
             GatherLayout,
-            [texel_count, light_count, ambient_count, flat_normals, eta, winding, padding0, padding1, lights, views, ambients]
+            [
+                texel_count,
+                light_count,
+                ambient_count,
+                flat_normals,
+                eta,
+                winding,
+                padding0,
+                padding1,
+                lights,
+                views,
+                ambients
+            ]
         );
         check!(GATHER, "Texel", TexelLayout, [triangle, barycentric_1, barycentric_2, area_ratio]);
         check!(CLUSTER, "Level", LevelLayout, [child_count, node_count, child_offset, node_offset]);
@@ -201,7 +218,18 @@ mod tests {
             SCATTER,
             "Scatter",
             ScatterLayout,
-            [table, texel_count, first_source, source_count, top_level, top_count, theta_squared, z_r_squared, padding, offsets]
+            [
+                table,
+                texel_count,
+                first_source,
+                source_count,
+                top_level,
+                top_count,
+                theta_squared,
+                z_r_squared,
+                padding,
+                offsets
+            ]
         );
         let (members, span) = naga_layout(translume_shaders::COMPOSITE.source, "Composite");
         assert_eq!(members[1], ("eye".to_owned(), offset_of!(CompositeLayout, eye) as u32));
@@ -213,7 +241,13 @@ mod tests {
     #[test]
     fn a_shifted_field_is_noticed() {
         let wgsl = translume_shaders::CLUSTER.source;
-        assert!(compare(wgsl, "Cluster", &[("power", offset_of!(Cluster, power) + 4)], size_of::<Cluster>()).is_err());
-        assert!(compare(wgsl, "Cluster", &[("power", offset_of!(Cluster, power))], size_of::<Cluster>() + 16).is_err());
+        assert!(
+            compare(wgsl, "Cluster", &[("power", offset_of!(Cluster, power) + 4)], size_of::<Cluster>())
+                .is_err()
+        );
+        assert!(
+            compare(wgsl, "Cluster", &[("power", offset_of!(Cluster, power))], size_of::<Cluster>() + 16)
+                .is_err()
+        );
     }
 }

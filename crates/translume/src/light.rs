@@ -86,7 +86,9 @@ impl Default for AmbientLight {
 impl Light {
     /// Checks every number. `index` names the light in messages.
     pub(crate) fn validate(&self, index: usize) -> Result<(), Error> {
-        let fail = |problem: String, remedy| Err(Error::Frame { problem: format!("light {index} {problem}"), remedy });
+        let fail = |problem: String, remedy| {
+            Err(Error::Frame { problem: format!("light {index} {problem}"), remedy })
+        };
         let (colour, vectors, direction) = match self {
             Self::Directional(light) => (light.irradiance, [light.to_light; 2], Some(light.to_light)),
             Self::Point(light) => (light.intensity, [light.position; 2], None),
@@ -96,7 +98,10 @@ impl Light {
             return fail(format!("has colour {colour:?}"), "colours are finite and not negative");
         }
         if vectors.iter().flatten().any(|x| !x.is_finite()) {
-            return fail(format!("has a coordinate or angle that is not finite: {vectors:?}"), "give finite numbers");
+            return fail(
+                format!("has a coordinate or angle that is not finite: {vectors:?}"),
+                "give finite numbers",
+            );
         }
         if direction.is_some_and(|d| d.iter().map(|x| x * x).sum::<f32>() < 1e-20) {
             return fail("has no direction".to_owned(), "give a vector that is not zero");

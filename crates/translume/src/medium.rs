@@ -72,10 +72,12 @@ impl Medium {
     pub fn preset(name: &str) -> Result<Self, Error> {
         let wanted: String =
             name.chars().filter(|c| !matches!(c, ' ' | '-' | '_')).flat_map(char::to_lowercase).collect();
-        Self::PRESETS.iter().find(|(preset, _)| *preset == wanted).map(|(_, medium)| *medium).ok_or_else(|| {
-            let known = Self::PRESETS.iter().map(|(name, _)| *name).collect::<Vec<_>>().join(", ");
-            Error::UnknownMedium { name: name.to_owned(), known }
-        })
+        Self::PRESETS.iter().find(|(preset, _)| *preset == wanted).map(|(_, medium)| *medium).ok_or_else(
+            || {
+                let known = Self::PRESETS.iter().map(|(name, _)| *name).collect::<Vec<_>>().join(", ");
+                Error::UnknownMedium { name: name.to_owned(), known }
+            },
+        )
     }
 
     /// Checks every coefficient's range.
@@ -83,7 +85,8 @@ impl Medium {
     /// # Errors
     /// [`Error::Medium`] names the coefficient and channel.
     pub fn validate(&self) -> Result<(), Error> {
-        const SCATTERING: [&str; 3] = ["sigma_s_prime (red)", "sigma_s_prime (green)", "sigma_s_prime (blue)"];
+        const SCATTERING: [&str; 3] =
+            ["sigma_s_prime (red)", "sigma_s_prime (green)", "sigma_s_prime (blue)"];
         const ABSORPTION: [&str; 3] = ["sigma_a (red)", "sigma_a (green)", "sigma_a (blue)"];
         let coefficients = SCATTERING.into_iter().zip(self.sigma_s_prime);
         for (field, value) in coefficients.chain(ABSORPTION.into_iter().zip(self.sigma_a)) {

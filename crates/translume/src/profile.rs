@@ -30,8 +30,9 @@ impl Profile {
         })
     }
 
-    /// What multiplies F_t(η, ω_o)·B/π on the way to the eye.
-    pub(crate) fn exit_scale(self, ior: f32) -> f32 {
+    /// What a host's own material multiplies F_t(η, ω_o)·B/π with: 1, or 1/(1 − F_dr,ext). `ior` as in [`Medium::ior`].
+    #[must_use]
+    pub fn exit_scale(self, ior: f32) -> f32 {
         match self {
             Self::Dipole => 1.0,
             Self::DipoleNormalised => (1.0 / fresnel::hemispherical_transmittance(f64::from(ior))) as f32,
@@ -148,7 +149,10 @@ mod tests {
                 // 1e-5: the midpoint rule's cut-offs; the closed form itself is exact.
                 assert!((dipole.total() / expected - 1.0).abs() < 1e-9, "{medium:?}");
                 assert!((integrate(&dipole, 1.0) / expected - 1.0).abs() < 1e-5, "{medium:?}");
-                assert!((integrate(&dipole, 1.001) / expected - 1.0).abs() > 1e-5, "a brighter profile must be noticed");
+                assert!(
+                    (integrate(&dipole, 1.001) / expected - 1.0).abs() > 1e-5,
+                    "a brighter profile must be noticed"
+                );
             }
         }
     }

@@ -10,9 +10,14 @@ const PATIENCE: Duration = Duration::from_secs(600);
 ///
 /// # Errors
 /// [`Error::ReadBack`] when the device is lost or does not answer within ten minutes.
-pub fn buffer<T: bytemuck::Pod>(device: &wgpu::Device, queue: &wgpu::Queue, source: &wgpu::Buffer) -> Result<Vec<T>, Error> {
+pub fn buffer<T: bytemuck::Pod>(
+    device: &wgpu::Device,
+    queue: &wgpu::Queue,
+    source: &wgpu::Buffer,
+) -> Result<Vec<T>, Error> {
     let staging = staging(device, source.size());
-    let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("read back") });
+    let mut encoder =
+        device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("read back") });
     encoder.copy_buffer_to_buffer(source, 0, &staging, 0, source.size());
     queue.submit([encoder.finish()]);
     map(device, &staging, |bytes| bytemuck::pod_collect_to_vec(bytes))
@@ -32,7 +37,8 @@ pub fn texture<T: bytemuck::Pod>(
     let row = source.width() * size_of::<T>() as u32;
     let padded = row.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
     let staging = staging(device, u64::from(padded) * u64::from(source.height()));
-    let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("read back") });
+    let mut encoder =
+        device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("read back") });
     encoder.copy_texture_to_buffer(
         wgpu::TexelCopyTextureInfo {
             texture: source,
@@ -42,13 +48,20 @@ pub fn texture<T: bytemuck::Pod>(
         },
         wgpu::TexelCopyBufferInfo {
             buffer: &staging,
-            layout: wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(padded), rows_per_image: None },
+            layout: wgpu::TexelCopyBufferLayout {
+                offset: 0,
+                bytes_per_row: Some(padded),
+                rows_per_image: None,
+            },
         },
         wgpu::Extent3d { width: source.width(), height: source.height(), depth_or_array_layers: 1 },
     );
     queue.submit([encoder.finish()]);
     map(device, &staging, |bytes| {
-        bytes.chunks(padded as usize).flat_map(|line| bytemuck::pod_collect_to_vec(&line[..row as usize])).collect()
+        bytes
+            .chunks(padded as usize)
+            .flat_map(|line| bytemuck::pod_collect_to_vec(&line[..row as usize]))
+            .collect()
     })
 }
 

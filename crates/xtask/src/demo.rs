@@ -19,7 +19,7 @@ const PICTURES: [Picture; 2] = [
     Picture {
         what: "a morph of 48 frames, 384 × 384 (animated PNG: a browser plays it)",
         file: "out/creature-morph.png",
-        arguments: "render creature --medium jade --size 384 --frames 48",
+        arguments: "render creature --medium jade --size 384 --atlas 256 --shadow 1024 --frames 48",
     },
 ];
 

@@ -3,7 +3,9 @@
 use glam::{DVec3, Mat4};
 use translume::{Cluster, DirectionalLight, Light};
 use translume_reference::cluster::{self, Cluster as Twin};
-use translume_tests::{Check, Fixture, Pose, at_least, at_most, creature, holds, luminous, notices, sphere, sum};
+use translume_tests::{
+    Check, Fixture, Pose, at_least, at_most, creature, holds, luminous, notices, sphere, sum,
+};
 
 fn lit(fixture: &mut Fixture) {
     let sun = Light::Directional(DirectionalLight { to_light: [0.3, 0.7, 0.6], ..Default::default() });
@@ -89,7 +91,11 @@ fn root_power(fixture: &Fixture, gain: f64) -> Check {
     let root = fixture.clusters().last().copied().ok_or("no cluster")?;
     at_least("cluster: power", expected.length(), 1.0)?;
     // Roundings of f32; measured 2e-7.
-    at_most("cluster: power at the root", (vector(root.power) * gain).distance(expected) / expected.length(), 1e-5)
+    at_most(
+        "cluster: power at the root",
+        (vector(root.power) * gain).distance(expected) / expected.length(),
+        1e-5,
+    )
 }
 
 #[test]

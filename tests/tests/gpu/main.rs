@@ -3,8 +3,15 @@
 
 #![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used, reason = "a failure here is a failed test")]
 
+mod closure;
 mod cluster;
+mod composite;
 mod deform;
+mod errors;
+mod furnace;
 mod gather;
+mod golden;
+mod hard_cases;
 mod scatter;
 mod shadow;
+mod stages;

@@ -1,4 +1,4 @@
-//! kd order: texels sorted so that an implicit 4-ary tree over them has compact nodes (DESIGN section 4, idea 1).
+//! kd order: texels sorted so that an implicit 4-ary tree over them has compact nodes.
 
 /// The order of `points` by recursive median split along the longest side of the bounding box. The left part of every
 /// split is the largest power of two below the whole, so any aligned run of 4^l entries is one subtree. Ties go to the

@@ -100,14 +100,22 @@ impl Composite {
 
 impl CompositeView {
     /// Takes over the camera and the surface, and the body's medium and profile. Call it after [`Body::prepare`].
-    pub fn prepare(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, body: &Body, camera: &Camera, gloss: Gloss) {
+    pub fn prepare(
+        &mut self,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        body: &Body,
+        camera: &Camera,
+        gloss: Gloss,
+    ) {
         if self.depth_maps != body.depth_maps.texture {
             self.group = bind(device, &self.layout, &self.uniform, body);
             self.depth_maps = body.depth_maps.texture.clone();
         }
         let to_world = Mat4::from_scale(Vec3::splat(1.0 / body.mm_per_unit));
         let uniform = CompositeLayout {
-            view_projection: (Mat4::from_cols_array_2d(&camera.view_projection) * to_world).to_cols_array_2d(),
+            view_projection: (Mat4::from_cols_array_2d(&camera.view_projection) * to_world)
+                .to_cols_array_2d(),
             eye: camera.eye.map(|x| x * body.mm_per_unit),
             eta: body.medium().ior,
             exit_scale: body.profile().exit_scale(body.medium().ior),
@@ -122,7 +130,12 @@ impl CompositeView {
     }
 }
 
-fn bind(device: &wgpu::Device, layout: &wgpu::BindGroupLayout, uniform: &wgpu::Buffer, body: &Body) -> wgpu::BindGroup {
+fn bind(
+    device: &wgpu::Device,
+    layout: &wgpu::BindGroupLayout,
+    uniform: &wgpu::Buffer,
+    body: &Body,
+) -> wgpu::BindGroup {
     let resources = [
         uniform.as_entire_binding(),
         body.buffers.positions.as_entire_binding(),
@@ -170,7 +183,10 @@ fn pipeline(
         fragment: Some(wgpu::FragmentState {
             module,
             entry_point: Some("fragment"),
-            compilation_options: wgpu::PipelineCompilationOptions { constants: &constants, ..Default::default() },
+            compilation_options: wgpu::PipelineCompilationOptions {
+                constants: &constants,
+                ..Default::default()
+            },
             targets: &[Some(target.format.into())],
         }),
         multiview_mask: None,

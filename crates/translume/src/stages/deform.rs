@@ -39,7 +39,13 @@ impl Deform {
     }
 
     /// A body that deforms gets its normals from the deformed triangles; a rigid one keeps those of its file.
-    pub fn encode(&self, pass: &mut wgpu::ComputePass<'_>, group: &wgpu::BindGroup, vertices: u32, deforms: bool) {
+    pub fn encode(
+        &self,
+        pass: &mut wgpu::ComputePass<'_>,
+        group: &wgpu::BindGroup,
+        vertices: u32,
+        deforms: bool,
+    ) {
         pass.set_bind_group(0, group, &[]);
         pass.set_pipeline(&self.morph);
         gpu::dispatch(pass, vertices);

@@ -4,8 +4,8 @@
 //! twin   `translume_reference::gather`                                  WGSL    `gather.wgsl`
 
 use crate::body::Buffers;
-use crate::stages::shadow::DepthMaps;
 use crate::gpu::{self, COMPARISON, DEPTH_MAPS, READ, UNIFORM, WRITE};
+use crate::stages::shadow::DepthMaps;
 
 pub(crate) struct Gather {
     layout: wgpu::BindGroupLayout,

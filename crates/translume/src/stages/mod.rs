@@ -40,7 +40,12 @@ impl StageSet {
     /// A stage and everything that reads what it writes.
     #[must_use]
     pub fn from_stage_on(first: Stage) -> Self {
-        Self(Stage::ALL.into_iter().filter(|stage| *stage as u8 >= first as u8).fold(0, |set, stage| set | 1 << stage as u8))
+        Self(
+            Stage::ALL
+                .into_iter()
+                .filter(|stage| *stage as u8 >= first as u8)
+                .fold(0, |set, stage| set | 1 << stage as u8),
+        )
     }
 
     /// Whether the stage is in the set.

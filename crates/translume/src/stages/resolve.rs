@@ -32,8 +32,11 @@ impl Resolve {
         pixels: &wgpu::Buffer,
         texture: &wgpu::TextureView,
     ) -> wgpu::BindGroup {
-        let resources =
-            [values.as_entire_binding(), pixels.as_entire_binding(), wgpu::BindingResource::TextureView(texture)];
+        let resources = [
+            values.as_entire_binding(),
+            pixels.as_entire_binding(),
+            wgpu::BindingResource::TextureView(texture),
+        ];
         gpu::bind(device, "resolve", &self.layout, &resources)
     }
 

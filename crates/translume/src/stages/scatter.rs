@@ -50,7 +50,12 @@ impl Scatter {
         }
     }
 
-    pub fn bind(&self, device: &wgpu::Device, buffers: &Buffers, kernel_table: &wgpu::TextureView) -> wgpu::BindGroup {
+    pub fn bind(
+        &self,
+        device: &wgpu::Device,
+        buffers: &Buffers,
+        kernel_table: &wgpu::TextureView,
+    ) -> wgpu::BindGroup {
         let resources = [
             gpu::uniform_slot::<ScatterLayout>(&buffers.scatter_uniforms),
             buffers.texel_positions.as_entire_binding(),
@@ -77,7 +82,13 @@ impl Scatter {
         bytes
     }
 
-    pub fn encode(&self, pass: &mut wgpu::ComputePass<'_>, group: &wgpu::BindGroup, method: Method, texels: u32) {
+    pub fn encode(
+        &self,
+        pass: &mut wgpu::ComputePass<'_>,
+        group: &wgpu::BindGroup,
+        method: Method,
+        texels: u32,
+    ) {
         match method {
             Method::AllPairs => {
                 pass.set_pipeline(&self.all_pairs);

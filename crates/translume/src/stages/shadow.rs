@@ -1,7 +1,7 @@
 //! Shadow: the depth of the deformed mesh seen from each shadowed light.
 //!
 //! reads  positions, triangles                              writes  one layer of depth per view
-//! twin   `translume_reference::scene`, by tracing rays     WGSL    `shadow.wgsl`
+//! twin   `translume_reference::Surface`, by tracing rays   WGSL    `shadow.wgsl`
 
 use crate::Light;
 use crate::body::Buffers;
@@ -180,13 +180,23 @@ impl Shadow {
         DepthMaps { texture, sampled, sampler, layers, uniforms, group }
     }
 
-    pub fn encode(&self, encoder: &mut wgpu::CommandEncoder, maps: &DepthMaps, buffers: &Buffers, views: u32, indices: u32) {
+    pub fn encode(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        maps: &DepthMaps,
+        buffers: &Buffers,
+        views: u32,
+        indices: u32,
+    ) {
         for (slot, layer) in (0..views).zip(&maps.layers) {
             let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
                 label: Some("shadow"),
                 depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
                     view: layer,
-                    depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(1.0), store: wgpu::StoreOp::Store }),
+                    depth_ops: Some(wgpu::Operations {
+                        load: wgpu::LoadOp::Clear(1.0),
+                        store: wgpu::StoreOp::Store,
+                    }),
                     stencil_ops: None,
                 }),
                 ..Default::default()
@@ -207,7 +217,11 @@ impl DepthMaps {
 
     pub fn write_views(&self, queue: &wgpu::Queue, views: &[View]) {
         for (slot, view) in (0..).zip(views) {
-            queue.write_buffer(&self.uniforms, slot * UNIFORM_STRIDE, bytemuck::bytes_of(&view.matrix.to_cols_array_2d()));
+            queue.write_buffer(
+                &self.uniforms,
+                slot * UNIFORM_STRIDE,
+                bytemuck::bytes_of(&view.matrix.to_cols_array_2d()),
+            );
         }
     }
 }

@@ -1,0 +1,87 @@
+//! Which stages a frame runs.
+
+use glam::{Mat4, Vec3};
+use translume::{Frame, Light, Medium, PointLight, Profile, Stage};
+use translume_tests::{Fixture, Pose, creature, gpu};
+
+fn lamp(x: f32) -> [Light; 1] {
+    [Light::Point(PointLight { position: [x, 60.0, 150.0], intensity: [1e4; 3], ..Default::default() })]
+}
+
+fn pending(fixture: &mut Fixture, frame: &Frame<'_>) -> Vec<Stage> {
+    fixture.prepare(frame).unwrap();
+    let stages = fixture.body.pending();
+    let list = Stage::ALL.into_iter().filter(|stage| stages.contains(*stage)).collect();
+    fixture.encode();
+    assert!(fixture.body.pending().is_empty(), "[{}] encode left stages behind", gpu().adapter_name);
+    list
+}
+
+/// The least and the most a change may run: from the first to the second stage onwards.
+#[track_caller]
+fn runs_from(stages: &[Stage], first: Stage) {
+    let expected: Vec<Stage> = Stage::ALL.into_iter().filter(|stage| *stage as u8 >= first as u8).collect();
+    assert_eq!(stages, expected, "[{}]", gpu().adapter_name);
+}
+
+#[test]
+fn a_frame_runs_what_its_inputs_changed() {
+    let mut fixture = Fixture::new(&creature(), |_| ());
+    let pose = Pose::rest(1);
+    let lights = lamp(0.0);
+    runs_from(&pending(&mut fixture, &pose.frame(&lights)), Stage::Deform);
+    assert_eq!(pending(&mut fixture, &pose.frame(&lights)), []);
+
+    let moved = lamp(10.0);
+    runs_from(&pending(&mut fixture, &pose.frame(&moved)), Stage::Shadow);
+    let melted = Pose { weights: vec![0.4], ..Pose::rest(1) };
+    runs_from(&pending(&mut fixture, &melted.frame(&moved)), Stage::Deform);
+    let elsewhere = Pose { model: Mat4::from_translation(Vec3::X), ..melted };
+    runs_from(&pending(&mut fixture, &elsewhere.frame(&moved)), Stage::Deform);
+    assert_eq!(pending(&mut fixture, &elsewhere.frame(&moved)), []);
+}
+
+/// A medium or profile needs the scatter; how much more it runs is not promised, but the mesh stays as it is.
+#[test]
+fn a_medium_does_not_deform() {
+    let mut fixture = Fixture::new(&creature(), |_| ());
+    let (pose, lights) = (Pose::rest(1), lamp(0.0));
+    pending(&mut fixture, &pose.frame(&lights));
+    let changes: [fn(&mut Fixture); 3] = [
+        |f| f.body.set_medium(Medium { ior: Medium::MARBLE.ior, ..Medium::WAX }).unwrap(),
+        |f| f.body.set_medium(Medium::SKIN1).unwrap(),
+        |f| f.body.set_profile(Profile::Dipole),
+    ];
+    for change in changes {
+        change(&mut fixture);
+        let stages = pending(&mut fixture, &pose.frame(&lights));
+        assert!(stages.ends_with(&[Stage::Scatter, Stage::Resolve]), "[{}] {stages:?}", gpu().adapter_name);
+        assert!(!stages.contains(&Stage::Deform), "[{}] {stages:?}", gpu().adapter_name);
+    }
+    fixture.body.set_medium(Medium::SKIN1).unwrap();
+    assert_eq!(pending(&mut fixture, &pose.frame(&lights)), [], "the same medium once more");
+}
+
+/// A frame in steps gives the bits of the same frame at once, and encoding it again changes nothing.
+#[test]
+fn a_kept_stage_is_as_good_as_a_new_one() {
+    let melted = Pose { weights: vec![0.4], ..Pose::rest(1) };
+    let (first, second) = (lamp(0.0), lamp(25.0));
+    let mut in_steps = Fixture::new(&creature(), |_| ());
+    in_steps.run(&Pose::rest(1).frame(&first));
+    in_steps.run(&melted.frame(&first));
+    let before = in_steps.exitance();
+    in_steps.run(&melted.frame(&second));
+    in_steps.body.set_medium(Medium::WAX).unwrap();
+    in_steps.run(&melted.frame(&second));
+    let mut at_once = Fixture::new(&creature(), |d| d.medium = Medium::WAX);
+    at_once.run(&melted.frame(&second));
+    let after = in_steps.exitance();
+    // The kernel table's range remembers the first pose, so that its interpolation differs a little.
+    let error = translume_tests::relative_rmse(&after, &at_once.exitance());
+    translume_tests::holds(translume_tests::at_most("stages: in steps against at once", error, 5e-3));
+    assert_ne!(before, after, "[{}] another lamp and medium change the light", gpu().adapter_name);
+    in_steps.run(&melted.frame(&second));
+    in_steps.encode();
+    assert_eq!(after, in_steps.exitance(), "[{}]", gpu().adapter_name);
+}
