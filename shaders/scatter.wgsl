@@ -6,14 +6,14 @@ struct Scatter {
     // Sources of one dispatch of `all_pairs`.
     first_source: u32,
     source_count: u32,
-    // Level at which the descent of `tree` starts, and its number of nodes.
+    // Level at which the descent of `tree` starts: a single node.
     top_level: u32,
-    top_count: u32,
     // Opening angle: a cluster is accepted when radius < theta·√(distance² + z_r²).
     theta_squared: f32,
     // Square of the shortest mean free path of the three channels, mm².
     z_r_squared: f32,
-    padding: u32,
+    padding0: u32,
+    padding1: u32,
     // Where each level begins in `clusters`; level 0 is the texels.
     offsets: array<vec4u, 4>,
 }

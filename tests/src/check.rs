@@ -46,9 +46,12 @@ pub fn holds(check: Check) {
 ///
 /// # Panics
 /// If it found nothing.
+#[allow(clippy::needless_pass_by_value, reason = "reads like `holds`")]
 #[track_caller]
 pub fn notices(check: Check) {
-    assert!(check.is_err(), "[{}] broken input passed the check", gpu().adapter_name);
+    if let Ok(()) = check {
+        panic!("[{}] broken input passed the check", gpu().adapter_name);
+    }
 }
 
 /// Root mean square of the difference over the root mean square of the reference.

@@ -74,10 +74,10 @@ pub struct Render {
     #[arg(long, value_name = "X")]
     pub gloss: Option<f32>,
     /// Where the camera stands: degrees to the right of the front and upwards.
-    #[arg(long, value_name = "YAW,PITCH", allow_hyphen_values = true, default_value = "14,9", value_parser = degrees)]
+    #[arg(long, value_name = "YAW,PITCH", conflicts_with = "scene", allow_hyphen_values = true, default_value = "14,9", value_parser = degrees)]
     pub view: [f32; 2],
     /// Which axis of the model points up: y or z.
-    #[arg(long, value_name = "AXIS", default_value = "y", value_parser = ["y", "z"])]
+    #[arg(long, value_name = "AXIS", conflicts_with = "scene", default_value = "y", value_parser = ["y", "z"])]
     pub up: String,
     /// Brightness of a PNG, in stops.
     #[arg(long, value_name = "EV", default_value_t = 0.0, allow_negative_numbers = true)]

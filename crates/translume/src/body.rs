@@ -1,58 +1,18 @@
 //! A body: one mesh that light goes through.
 
-use crate::buffers::{self, Extent};
-use crate::frame::{self, Frame, GatherBody, PoseBounds};
-use crate::kernel_table::{self, KernelRange, KernelTableLayout};
-use crate::layout::{DeformLayout, ScatterLayout};
+use crate::buffers::{self, Buffers, Extent, Outputs};
+use crate::descriptor::BodyDescriptor;
+use crate::frame::{self, Deformation, Frame, GatherBody, Lighting, PoseBounds};
+use crate::kernel_texture::KernelTexture;
+use crate::layout::DeformLayout;
 use crate::profile::Dipole;
 use crate::stages::cluster::Tree;
 use crate::stages::scatter::{Method, Scatter};
 use crate::stages::shadow::DepthMaps;
-use crate::stages::{Stage, StageSet, Stages, resolve::Resolve};
-use crate::{Deformation, Error, Light, Lighting, Medium, Profile};
+use crate::stages::{Stage, StageSet, Stages};
+use crate::{Error, Light, Medium, Profile};
 use glam::{Mat4, Vec3};
 use std::sync::Arc;
-use translume_mesh::{Atlas, Mesh};
-
-pub(crate) use crate::buffers::Buffers;
-
-/// What a body is made of and how it is computed.
-#[derive(Clone, Copy, Debug)]
-pub struct BodyDescriptor<'a> {
-    /// The mesh, clean (see [`translume_mesh::repair`]).
-    pub mesh: &'a Mesh,
-    /// Its atlas.
-    pub atlas: &'a Atlas,
-    /// The medium.
-    pub medium: Medium,
-    /// The profile.
-    pub profile: Profile,
-    /// How the scatter sum is evaluated.
-    pub method: Method,
-    /// Millimetres per world unit: 1000 for an engine that counts in metres. Finite, > 0.
-    pub mm_per_unit: f32,
-    /// Whether each triangle keeps its own normal instead of the smooth vertex normals.
-    pub flat_normals: bool,
-    /// Width of a depth map in texels, from 16 to the device's `max_texture_dimension_2d`.
-    pub shadow_resolution: u32,
-}
-
-impl<'a> BodyDescriptor<'a> {
-    /// Defaults for everything but the shape: marble, normalised dipole, tree, metres, smooth normals, depth maps of 1024².
-    #[must_use]
-    pub fn new(mesh: &'a Mesh, atlas: &'a Atlas) -> Self {
-        Self {
-            mesh,
-            atlas,
-            medium: Medium::default(),
-            profile: Profile::default(),
-            method: Method::default(),
-            mm_per_unit: 1000.0,
-            flat_normals: false,
-            shadow_resolution: 1024,
-        }
-    }
-}
 
 /// A mesh that light goes through: its buffers, and which stages its next frame needs.
 ///
@@ -65,8 +25,7 @@ pub struct Body {
     pub(crate) mm_per_unit: f32,
     tree: Tree,
     bounds: PoseBounds,
-    /// Rms radius of a typical texel over the diagonal of the rest pose.
-    relative_spread: f32,
+    kernel: KernelTexture,
     shadow_resolution: u32,
 
     medium: Medium,
@@ -78,8 +37,6 @@ pub struct Body {
     lights: Vec<Light>,
     corners: [Vec3; 8],
     view_count: u32,
-    table_diagonal: f32,
-    table: KernelTableLayout,
     pending: StageSet,
     /// Whether the kernel table no longer fits the medium, or the scatter uniforms the method.
     scatter_stale: bool,
@@ -89,7 +46,6 @@ pub struct Body {
 
     exitance: wgpu::Texture,
     exitance_view: wgpu::TextureView,
-    kernel_table: wgpu::Texture,
     pub(crate) depth_maps: DepthMaps,
     deform_group: wgpu::BindGroup,
     gather_group: wgpu::BindGroup,
@@ -97,12 +53,6 @@ pub struct Body {
     scatter_group: wgpu::BindGroup,
     resolve_group: wgpu::BindGroup,
 }
-
-/// How much longer than the body's diagonal the kernel table reaches, and how much shorter the diagonal may get before the table is
-/// made anew.
-const TABLE_REACH: f32 = 4.0;
-/// Texels this much narrower than a typical one still find themselves in the kernel table.
-const NARROW_TEXELS: f32 = 16.0;
 
 impl Body {
     pub(crate) fn new(
@@ -112,34 +62,21 @@ impl Body {
     ) -> Result<Self, Error> {
         let BodyDescriptor { mesh, atlas, medium, profile, method, mm_per_unit, .. } = *descriptor;
         buffers::validate(mesh, atlas)?;
-        validate_options(descriptor, device.limits().max_texture_dimension_2d)?;
+        descriptor.validate(device.limits().max_texture_dimension_2d)?;
         let extent = Extent::new(mesh, atlas);
         extent.check(&device.limits())?;
 
         let tree = Tree::new(extent.texels);
         let buffers = Buffers::new(device, mesh, atlas, &tree);
-        let covered = atlas.texels.iter().filter(|texel| texel.area > 0.0).count().max(1);
-        let area: f32 = atlas.texels.iter().map(|texel| texel.area).sum();
-        let spread = (area / covered as f32 / std::f32::consts::TAU).sqrt();
-
-        let size = wgpu::Extent3d { width: atlas.size, height: atlas.size, depth_or_array_layers: 1 };
-        let usage = wgpu::TextureUsages::STORAGE_BINDING
-            | wgpu::TextureUsages::TEXTURE_BINDING
-            | wgpu::TextureUsages::COPY_SRC;
-        let exitance = texture(device, "exitance", size, usage);
+        let exitance = stages.resolve.texture(device, atlas.size);
         let exitance_view = exitance.create_view(&wgpu::TextureViewDescriptor::default());
-        let bounds = PoseBounds::new(mesh);
-        let rest_diagonal = frame::diagonal(&bounds.corners(&vec![0.0; mesh.targets.len()], Mat4::IDENTITY));
-        let relative_spread = spread / rest_diagonal.max(f32::MIN_POSITIVE);
-        let table = KernelTableLayout::new(table_range(1.0, relative_spread));
-        let kernel_table = kernel_table_texture(device, table);
+        let kernel = KernelTexture::new(device, mesh, atlas);
         let depth_maps = stages.shadow.depth_maps(device, descriptor.shadow_resolution, 1);
-        let table_view = kernel_table.create_view(&wgpu::TextureViewDescriptor::default());
         Ok(Self {
             deform_group: stages.deform.bind(device, &buffers),
             gather_group: stages.gather.bind(device, &buffers, &depth_maps),
             cluster_group: stages.cluster.bind(device, &buffers),
-            scatter_group: stages.scatter.bind(device, &buffers, &table_view),
+            scatter_group: stages.scatter.bind(device, &buffers, &kernel.view),
             resolve_group: stages.resolve.bind(device, &buffers.exitance, &buffers.pixels, &exitance_view),
             stages,
             buffers,
@@ -147,8 +84,8 @@ impl Body {
             flat_normals: descriptor.flat_normals,
             mm_per_unit,
             tree,
-            bounds,
-            relative_spread,
+            bounds: PoseBounds::new(mesh),
+            kernel,
             shadow_resolution: descriptor.shadow_resolution,
             medium,
             profile,
@@ -159,15 +96,12 @@ impl Body {
             lights: Vec::new(),
             corners: [Vec3::ZERO; 8],
             view_count: 0,
-            table_diagonal: 0.0,
-            table,
             pending: StageSet::default(),
             scatter_stale: true,
             surface_stale: true,
             never_prepared: true,
             exitance,
             exitance_view,
-            kernel_table,
             depth_maps,
         })
     }
@@ -229,7 +163,7 @@ impl Body {
         self.lights.extend_from_slice(lights);
         self.never_prepared = false;
         self.surface_stale = false;
-        self.refresh_medium(queue);
+        self.refresh_kernel(queue);
         Ok(())
     }
 
@@ -297,7 +231,7 @@ impl Body {
     /// # Errors
     /// [`Error::Frame`] for an opening angle outside its range.
     pub fn set_method(&mut self, method: Method) -> Result<(), Error> {
-        validate_method(method)?;
+        method.validate()?;
         self.scatter_stale |= method != self.method;
         self.method = method;
         Ok(())
@@ -331,17 +265,7 @@ impl Body {
     /// What the stages wrote, for copies and read-back.
     #[must_use]
     pub fn outputs(&self) -> Outputs<'_> {
-        let buffers = &self.buffers;
-        Outputs {
-            positions: &buffers.positions,
-            normals: &buffers.normals,
-            depth_maps: &self.depth_maps.texture,
-            texel_positions: &buffers.texel_positions,
-            texel_normals: &buffers.texel_normals,
-            irradiance: &buffers.irradiance,
-            clusters: &buffers.clusters,
-            exitance: &buffers.exitance,
-        }
+        self.buffers.outputs(&self.depth_maps)
     }
 
     fn weights_of(&self, deformation: Deformation<'_>) -> Result<Vec<f32>, Error> {
@@ -369,144 +293,20 @@ impl Body {
     }
 
     /// Makes the kernel table anew where the medium changed or the body outgrew it.
-    fn refresh_medium(&mut self, queue: &wgpu::Queue) {
-        let diagonal = frame::diagonal(&self.corners).max(f32::MIN_POSITIVE);
-        let outgrown = !(0.25..=1.0).contains(&(diagonal / self.table_diagonal));
-        if !self.scatter_stale && !outgrown {
+    fn refresh_kernel(&mut self, queue: &wgpu::Queue) {
+        let diagonal = frame::diagonal(&self.corners);
+        if !self.scatter_stale && self.kernel.fits(diagonal) {
             return;
         }
         let channels = [0, 1, 2].map(|channel| Dipole::new(&self.medium, channel));
-        // The range keeps its proportions, so that the texture's size stays; the margin spares the next growth a new table.
-        self.table_diagonal = if outgrown { 1.25 * diagonal } else { self.table_diagonal };
-        let mut table = KernelTableLayout::new(table_range(self.table_diagonal, self.relative_spread));
-        (table.columns, table.rows) = (self.table.columns, self.table.rows);
-        self.table = table;
-        let texels = kernel_table::build(table, &channels);
-        queue.write_texture(
-            self.kernel_table.as_image_copy(),
-            bytemuck::cast_slice(&texels),
-            wgpu::TexelCopyBufferLayout {
-                offset: 0,
-                bytes_per_row: Some(16 * table.columns),
-                rows_per_image: None,
-            },
-            self.kernel_table.size(),
-        );
-        queue.write_buffer(
-            &self.buffers.scatter_uniforms,
-            0,
-            &Scatter::uniforms(self.scatter_layout(&channels)),
-        );
+        let table = self.kernel.write(queue, &channels, diagonal);
+        let uniforms = Scatter::uniforms(Scatter::layout(table, &channels, &self.tree, self.method));
+        queue.write_buffer(&self.buffers.scatter_uniforms, 0, &uniforms);
         self.pending.insert(StageSet::from_stage_on(Stage::Scatter));
         self.scatter_stale = false;
     }
-
-    fn scatter_layout(&self, channels: &[Dipole; 3]) -> ScatterLayout {
-        let theta = match self.method {
-            Method::Tree { theta } => theta,
-            Method::AllPairs => 0.0,
-        };
-        let z_r = channels
-            .iter()
-            .filter(|dipole| dipole.total() > 0.0)
-            .map(|dipole| dipole.z_r as f32)
-            .fold(f32::MAX, f32::min);
-        let mut offsets = [[0; 4]; 4];
-        for (level, offset) in self.tree.offsets.iter().enumerate() {
-            offsets[level / 4][level % 4] = *offset;
-        }
-        ScatterLayout {
-            table: self.table,
-            texel_count: self.extent.texels,
-            first_source: 0,
-            source_count: 0,
-            top_level: self.tree.top_level(),
-            top_count: 1,
-            theta_squared: theta * theta,
-            z_r_squared: z_r.min(1e15) * z_r.min(1e15),
-            padding: 0,
-            offsets,
-        }
-    }
-}
-
-/// What the stages wrote, as buffers in the order of the atlas' texels or the mesh's vertices. Every entry is four floats but the
-/// clusters' ([`Cluster`](crate::Cluster)).
-#[derive(Clone, Copy, Debug)]
-pub struct Outputs<'a> {
-    /// Deformed positions of the mesh's vertices, mm, w = 1.
-    pub positions: &'a wgpu::Buffer,
-    /// Unit normals of the mesh's vertices.
-    pub normals: &'a wgpu::Buffer,
-    /// `Depth32Float`, a layer per view.
-    pub depth_maps: &'a wgpu::Texture,
-    /// Position of each texel, mm, and its live area, mm².
-    pub texel_positions: &'a wgpu::Buffer,
-    /// Unit shading normal of each texel.
-    pub texel_normals: &'a wgpu::Buffer,
-    /// Irradiance E of each texel, RGB.
-    pub irradiance: &'a wgpu::Buffer,
-    /// Clusters of every level above the texels.
-    pub clusters: &'a wgpu::Buffer,
-    /// Radiant exitance B of each texel, RGB.
-    pub exitance: &'a wgpu::Buffer,
 }
 
 fn begin<'a>(encoder: &'a mut wgpu::CommandEncoder, label: &str) -> wgpu::ComputePass<'a> {
     encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some(label), timestamp_writes: None })
-}
-
-fn texture(
-    device: &wgpu::Device,
-    label: &str,
-    size: wgpu::Extent3d,
-    usage: wgpu::TextureUsages,
-) -> wgpu::Texture {
-    device.create_texture(&wgpu::TextureDescriptor {
-        label: Some(label),
-        size,
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format: Resolve::FORMAT,
-        usage,
-        view_formats: &[],
-    })
-}
-
-fn table_range(diagonal: f32, relative_spread: f32) -> KernelRange {
-    KernelRange { least_spread: diagonal * relative_spread / NARROW_TEXELS, longest: TABLE_REACH * diagonal }
-}
-
-fn kernel_table_texture(device: &wgpu::Device, table: KernelTableLayout) -> wgpu::Texture {
-    // One cell to spare: the same proportions at another scale may round up.
-    let size = wgpu::Extent3d { width: table.columns, height: 2 * table.rows, depth_or_array_layers: 1 };
-    let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
-    texture(device, "kernel table", size, usage)
-}
-
-fn validate_options(descriptor: &BodyDescriptor<'_>, limit: u32) -> Result<(), Error> {
-    descriptor.medium.validate()?;
-    validate_method(descriptor.method)?;
-    let fail =
-        |problem: String, remedy| Err(Error::Body { mesh: descriptor.mesh.name.clone(), problem, remedy });
-    if !(descriptor.mm_per_unit > 0.0 && descriptor.mm_per_unit.is_finite()) {
-        let problem = format!("{} mm per unit", descriptor.mm_per_unit);
-        return fail(problem, "give a finite scale above 0");
-    }
-    if !(16..=limit).contains(&descriptor.shadow_resolution) {
-        let problem = format!("depth maps of {}²", descriptor.shadow_resolution);
-        return fail(problem, "give a resolution between 16 and the device's max_texture_dimension_2d");
-    }
-    Ok(())
-}
-
-fn validate_method(method: Method) -> Result<(), Error> {
-    match method {
-        Method::Tree { theta } if !(0.05..=2.0).contains(&theta) => Err(Error::Frame {
-            problem: format!("opening angle {theta}"),
-            remedy: "give θ between 0.05 and 2, or use all pairs",
-        }),
-        _ => Ok(()),
-    }
 }

@@ -5,6 +5,7 @@ use crate::gpu::{self, UNIFORM_STRIDE};
 use crate::layout::{AtlasVertexLayout, Cluster, DeformLayout, GatherLayout, TexelLayout};
 use crate::stages::cluster::Tree;
 use crate::stages::scatter::SOURCES_PER_DISPATCH;
+use crate::stages::shadow::DepthMaps;
 use glam::Vec3;
 use translume_mesh::normals::NormalAdjacency;
 use translume_mesh::{Atlas, Mesh};
@@ -62,33 +63,34 @@ impl Extent {
         let clusters = u64::from(Tree::new(self.texels).clusters()) * size_of::<Cluster>() as u64;
         let pixels = 4 * u64::from(self.atlas_size) * u64::from(self.atlas_size);
         let deltas = 12 * u64::from(self.vertices) * u64::from(self.targets);
-        let needs = [
-            ("atlas", "max_texture_dimension_2d", u64::from(self.atlas_size), texture, SMALLER_ATLAS),
-            ("atlas", "max_storage_buffer_binding_size", pixels, binding, SMALLER_ATLAS),
-            (
-                "texels",
-                "max_storage_buffer_binding_size",
-                16 * u64::from(self.texels),
-                binding,
-                SMALLER_ATLAS,
-            ),
-            ("clusters", "max_storage_buffer_binding_size", clusters, binding, SMALLER_ATLAS),
-            ("mesh", "max_storage_buffer_binding_size", 24 * u64::from(self.vertices), binding, SMALLER_MESH),
-            (
-                "mesh",
-                "max_storage_buffer_binding_size",
-                12 * u64::from(self.triangles),
-                binding,
-                SMALLER_MESH,
-            ),
-            ("morph targets", "max_storage_buffer_binding_size", deltas, binding, "use fewer morph targets"),
+        // Every triangle is adjacent to its three corners, and to the copies of those at seams of the mesh.
+        let adjacency = 4 * (u64::from(self.vertices) + 6 * u64::from(self.triangles));
+        let bindings = [
+            ("atlas", pixels, SMALLER_ATLAS),
+            ("texels", 16 * u64::from(self.texels), SMALLER_ATLAS),
+            ("clusters", clusters, SMALLER_ATLAS),
+            ("mesh", 24 * u64::from(self.vertices), SMALLER_MESH),
+            ("mesh", adjacency, SMALLER_MESH),
+            ("morph targets", deltas, "use fewer morph targets"),
         ];
-        for (what, limit, required, actual, remedy) in needs {
-            if required > actual {
-                return Err(Error::Limit { what: what.to_owned(), limit, required, actual, remedy });
-            }
+        let limit = |what: &str, limit, required, actual, remedy| {
+            Err(Error::Limit { what: what.to_owned(), limit, required, actual, remedy })
+        };
+        if u64::from(self.atlas_size) > texture {
+            return limit(
+                "atlas",
+                "max_texture_dimension_2d",
+                self.atlas_size.into(),
+                texture,
+                SMALLER_ATLAS,
+            );
         }
-        Ok(())
+        match bindings.into_iter().find(|(_, required, _)| *required > binding) {
+            Some((what, required, remedy)) => {
+                limit(what, "max_storage_buffer_binding_size", required, binding, remedy)
+            }
+            None => Ok(()),
+        }
     }
 }
 
@@ -204,6 +206,41 @@ impl Buffers {
             atlas_indices: gpu::buffer_with(device, "atlas indices", BufferUsages::INDEX, &atlas_indices),
         }
     }
+
+    pub fn outputs<'a>(&'a self, depth_maps: &'a DepthMaps) -> Outputs<'a> {
+        Outputs {
+            positions: &self.positions,
+            normals: &self.normals,
+            depth_maps: &depth_maps.texture,
+            texel_positions: &self.texel_positions,
+            texel_normals: &self.texel_normals,
+            irradiance: &self.irradiance,
+            clusters: &self.clusters,
+            exitance: &self.exitance,
+        }
+    }
+}
+
+/// What the stages wrote, as buffers in the order of the atlas' texels or the mesh's vertices. Every entry is four floats but the
+/// clusters' ([`Cluster`](crate::Cluster)).
+#[derive(Clone, Copy, Debug)]
+pub struct Outputs<'a> {
+    /// Deformed positions of the mesh's vertices, mm, w = 1.
+    pub positions: &'a wgpu::Buffer,
+    /// Unit normals of the mesh's vertices.
+    pub normals: &'a wgpu::Buffer,
+    /// `Depth32Float`, a layer per view.
+    pub depth_maps: &'a wgpu::Texture,
+    /// Position of each texel, mm, and its live area, mm².
+    pub texel_positions: &'a wgpu::Buffer,
+    /// Unit shading normal of each texel.
+    pub texel_normals: &'a wgpu::Buffer,
+    /// Irradiance E of each texel, RGB.
+    pub irradiance: &'a wgpu::Buffer,
+    /// Clusters of every level above the texels.
+    pub clusters: &'a wgpu::Buffer,
+    /// Radiant exitance B of each texel, RGB.
+    pub exitance: &'a wgpu::Buffer,
 }
 
 fn texel_layouts(mesh: &Mesh, atlas: &Atlas) -> Vec<TexelLayout> {

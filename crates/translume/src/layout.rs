@@ -116,10 +116,9 @@ pub(crate) struct ScatterLayout {
     pub first_source: u32,
     pub source_count: u32,
     pub top_level: u32,
-    pub top_count: u32,
     pub theta_squared: f32,
     pub z_r_squared: f32,
-    pub padding: u32,
+    pub padding: [u32; 2],
     pub offsets: [[u32; 4]; 4],
 }
 
@@ -218,18 +217,7 @@ mod tests {
             SCATTER,
             "Scatter",
             ScatterLayout,
-            [
-                table,
-                texel_count,
-                first_source,
-                source_count,
-                top_level,
-                top_count,
-                theta_squared,
-                z_r_squared,
-                padding,
-                offsets
-            ]
+            [table, texel_count, first_source, source_count, top_level, theta_squared, z_r_squared, offsets]
         );
         let (members, span) = naga_layout(translume_shaders::COMPOSITE.source, "Composite");
         assert_eq!(members[1], ("eye".to_owned(), offset_of!(CompositeLayout, eye) as u32));

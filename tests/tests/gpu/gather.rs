@@ -48,7 +48,7 @@ impl Case {
         let mut fixture = Fixture::new(&self.model, |d| {
             d.medium = Medium { ior: self.ior, ..Medium::MARBLE };
             d.flat_normals = self.flat;
-            d.shadow_resolution = 1024;
+            d.shadow_resolution = 512;
         });
         fixture.run(&pose(&self.model).frame(lights));
         fixture
@@ -73,13 +73,13 @@ fn worst(a: &[Source], b: &[Source], vector: fn(&Source) -> [f64; 3]) -> f64 {
 }
 
 fn geometry(gpu: &[Source], twin: &[Source]) -> Check {
-    // Roundings of 1e-5 mm, stretched by weights up to 4 outside the triangle; measured 5e-5 mm.
+    // Roundings of 1e-5 mm, stretched by weights up to 4 outside the triangle; measured 6e-5 mm.
     at_most("gather: position error, mm", worst(gpu, twin, |s| s.position), 5e-4)?;
-    // As in deform: a thin triangle's normal; measured 3e-5 smooth, 5e-5 flat.
+    // As in deform: a thin triangle's normal; measured 5e-6 smooth, 1.2e-5 flat.
     at_most("gather: normal error", worst(gpu, twin, |s| s.normal), 5e-4)?;
     let area =
         gpu.iter().zip(twin).map(|(a, b)| (a.area - b.area).abs() / b.area.max(0.1)).fold(0.0, f64::max);
-    // A thin triangle's area loses digits like its normal; measured 4e-5.
+    // A thin triangle's area loses digits like its normal; measured 6e-6.
     at_most("gather: area error", area, 5e-4)
 }
 
@@ -89,7 +89,7 @@ fn unshadowed(case: &Case, lights: &[Light], gain: f64) -> Check {
     let gpu = fixture.sources();
     geometry(&gpu, &twin)?;
     let bright: Vec<_> = luminous(&gpu).into_iter().map(|e| e.map(|x| x * gain)).collect();
-    // Normals differ by f32 roundings and so does the cosine; measured 3e-6.
+    // Normals differ by f32 roundings and so does the cosine; measured 2e-6.
     at_most("gather: unshadowed relative RMSE", relative_rmse(&bright, &luminous(&twin)), 1e-4)
 }
 
@@ -116,7 +116,7 @@ fn narrow_cone(case: &Case, sky: &[Light]) -> Check {
     let fixture = case.fixture(&cone());
     let twin = fixture.twin_sources(&pose(&case.model), sky, 1);
     // 32 intervals over the cosine, linear between; worst where η < 1 puts a step at the critical angle.
-    // Measured 0.3 % (η ≥ 1) and 1 % (η = 0.8).
+    // Measured 0.13 % (η ≥ 1) and 0.6 % (η = 0.8).
     at_most(
         "gather: cone, relative RMSE",
         relative_rmse(&luminous(&fixture.sources()), &luminous(&twin)),
@@ -139,7 +139,7 @@ fn shadowed(case: &Case) -> Check {
     let twin = luminous(&fixture.twin_sources(&pose(&case.model), &lights(true), 4));
     let gpu = luminous(&fixture.sources());
     // Light falls on a texel's centre here and on its whole square there, with texels of 4 mm and ears of 3 mm.
-    // Measured on the creature 8–9 %, 14 % at η = 0.8 (a step at the critical angle); on the sphere 0.8 %, flat 2 %, η = 0.8 4 %.
+    // Measured on the creature 7–10 %, 14 % at η = 0.8 (a step at the critical angle); on the sphere 0.8 %, flat 2 %, η = 0.8 4 %.
     at_most("gather: shadowed relative RMSE", relative_rmse(&gpu, &twin), 0.17)?;
     let total = |light: &[[f64; 3]]| light.iter().flatten().sum::<f64>();
     at_most("gather: shadowed bias", (total(&gpu) / total(&twin) - 1.0).abs(), 0.025)
@@ -164,8 +164,9 @@ fn blocked(case: &Case, shadow: bool) -> Check {
     let fixture = case.fixture(&from_behind(false));
     let twin = |shadow| total(&luminous(&fixture.twin_sources(&pose(&case.model), &from_behind(shadow), 4)));
     let share = (gpu(false) - gpu(shadow)) / (twin(false) - twin(true));
-    // MEASURED
-    at_most("gather: blocked light over the twin's, from 1", (share - 1.0).abs(), 0.1)
+    // A tenth of the light is blocked, much of it at grazing incidence, where the map's lift and the texel's centre decide;
+    // measured 5 % more than by rays with maps of 512², 10 % with 1024².
+    at_most("gather: blocked light over the twin's, from 1", (share - 1.0).abs(), 0.15)
 }
 
 #[test]

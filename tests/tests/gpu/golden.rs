@@ -25,7 +25,7 @@ fn jade_creature() -> Scene {
         medium: Medium::JADE,
         mm_per_unit: 0.4,
         lights: vec![Light::Point(lamp), Light::Ambient(sky)],
-        shot: Shot { eye: [60.0, 80.0, 240.0], target: [0.0, 48.0, 0.0], fov: 0.45, size: 96 },
+        shot: Shot { eye: [60.0, 80.0, 240.0], target: [0.0, 50.0, 0.0], fov: 0.4, size: 96 },
     }
 }
 
@@ -43,14 +43,14 @@ fn marble_sphere() -> Scene {
 }
 
 fn skin_teapot() -> Scene {
-    let sun = DirectionalLight { to_light: [-0.4, 0.8, 0.6], irradiance: [4.0; 3], ..Default::default() };
+    let sun = DirectionalLight { to_light: [-0.4, 0.8, 0.6], irradiance: [7.0; 3], ..Default::default() };
     Scene {
         name: "teapot-skin1",
         model: teapot(),
         medium: Medium::SKIN1,
         mm_per_unit: 0.2,
         lights: vec![Light::Directional(sun)],
-        shot: Shot { eye: [60.0, 90.0, 190.0], target: [0.0, 22.0, 0.0], fov: 0.5, size: 96 },
+        shot: Shot { eye: [60.0, 110.0, 190.0], target: [2.0, 22.0, 0.0], fov: 0.42, size: 96 },
     }
 }
 
@@ -64,10 +64,11 @@ fn develop(scene: &Scene, gain: f32) -> Vec<u8> {
     radiance.iter().flat_map(|pixel| pixel[..3].iter().map(|x| tone(*x))).collect()
 }
 
-/// Mean absolute difference and largest difference of 8 × 8 block means, of 255. Another rasteriser moves silhouettes by a part of a
-/// pixel: some 300 of 9,216 pixels by up to 200/255 · 0.1 make 0.7; atlases differ in their last bits between processors.
-const MEAN: f64 = 0.7;
-const BLOCK: f64 = 4.0;
+/// Mean absolute difference and largest difference of 8 × 8 block means, of 255. Another rasteriser may choose otherwise at some
+/// twenty silhouette pixels, by up to 200: 0.4 in the mean of 9,216, and 3 in a block that holds one. 5 % more light makes 0.7–1.8
+/// and 4–5.
+const MEAN: f64 = 0.5;
+const BLOCK: f64 = 3.5;
 
 fn compare(scene: &Scene, gain: f32) -> Check {
     let picture = develop(scene, gain);

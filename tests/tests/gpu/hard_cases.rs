@@ -60,7 +60,7 @@ fn scaled(factor: f32) -> Medium {
 fn rows() -> Vec<Row> {
     vec![
         usual("as usual", |_| ()),
-        // Nothing is absorbed, and texels of 7 mm are far wider than the mean free path: at seams discs overlap.
+        // Nothing is absorbed, and texels of 7 mm are far wider than the mean free path: at seams discs overlap. Measured 8 %.
         usual("no absorption", |r| (r.medium, r.energy) = (Medium::SPECTRALON, Energy::AtMost(0.1))),
         usual("no scattering", |r| {
             (r.medium.sigma_s_prime, r.energy) = ([0.0; 3], Energy::None);
@@ -71,29 +71,22 @@ fn rows() -> Vec<Row> {
         usual("index matched", |r| r.medium.ior = 1.0),
         usual("index below one", |r| r.medium.ior = 0.8),
         usual("index of diamond", |r| r.medium.ior = 2.4),
-        usual("mean free path far below a texel", |r| {
-            (r.medium, r.energy) = (scaled(1e3), Energy::AtMost(0.1))
-        }),
+        usual("mean free path far below a texel", |r| r.medium = scaled(1e3)),
         usual("mean free path far above the body", |r| r.medium = scaled(1e-6)),
         usual("1 mm across", |r| r.mm_per_unit = 0.01),
-        usual("100 m across", |r| (r.mm_per_unit, r.energy) = (1000.0, Energy::AtMost(0.1))),
+        usual("100 m across", |r| r.mm_per_unit = 1000.0),
         usual("light inside", |r| (r.lights, r.energy) = (vec![lamp([1.0, 2.0, 3.0])], Energy::Any)),
-        usual("light on the surface", |r| {
-            (r.lights, r.energy) = (vec![lamp([0.0, 50.0, 0.0])], Energy::AtMost(0.1))
-        }),
+        usual("light on the surface", |r| r.lights = vec![lamp([0.0, 50.0, 0.0])]),
         usual("light at a vertex of a far body", |r| {
             r.model = Mat4::from_translation(Vec3::new(1e4, 0.0, 0.0));
-            (r.lights, r.energy) = (vec![lamp([1e4, 50.0, 0.0])], Energy::AtMost(0.1));
+            r.lights = vec![lamp([1e4, 50.0, 0.0])];
         }),
         usual("light at zero intensity", |r| {
             let dark = PointLight { position: [0.0, 90.0, 0.0], intensity: [0.0; 3], ..Default::default() };
             (r.lights, r.energy) = (vec![Light::Point(dark)], Energy::None);
         }),
         usual("no light", |r| (r.lights, r.energy) = (Vec::new(), Energy::None)),
-        // A millionth of a millimetre thick: light on one side leaves on the other as well.
-        usual("crushed flat", |r| {
-            (r.model, r.energy) = (Mat4::from_scale(Vec3::new(1.0, 1e-6, 1.0)), Energy::AtMost(1.1));
-        }),
+        usual("crushed flat", |r| r.model = Mat4::from_scale(Vec3::new(1.0, 1e-6, 1.0))),
         usual("stretched fourfold", |r| r.model = Mat4::from_scale(Vec3::new(4.0, 1.0, 1.0))),
         usual("mirrored", |r| r.model = Mat4::from_scale(Vec3::new(-1.0, 1.0, 1.0))),
     ]

@@ -3,7 +3,7 @@
 //! reads  texel positions, normals, irradiance      writes  clusters of every level
 //! twin   `translume_reference::cluster`            WGSL    `cluster.wgsl`
 
-use crate::body::Buffers;
+use crate::buffers::Buffers;
 use crate::gpu::{self, READ, UNIFORM_ARRAY, UNIFORM_STRIDE, WRITE};
 use crate::layout::LevelLayout;
 

@@ -3,7 +3,7 @@
 //! reads  rest pose, deltas, weights, triangle adjacency      writes  positions, normals
 //! twin   `translume_reference::deform`                       WGSL    `deform.wgsl`
 
-use crate::body::Buffers;
+use crate::buffers::Buffers;
 use crate::gpu::{self, READ, UNIFORM, WRITE};
 
 pub(crate) struct Deform {

@@ -3,7 +3,7 @@
 //! reads  texels, triangles, positions, normals, lights, depth maps      writes  texel positions, normals, irradiance
 //! twin   `translume_reference::gather`                                  WGSL    `gather.wgsl`
 
-use crate::body::Buffers;
+use crate::buffers::Buffers;
 use crate::gpu::{self, COMPARISON, DEPTH_MAPS, READ, UNIFORM, WRITE};
 use crate::stages::shadow::DepthMaps;
 

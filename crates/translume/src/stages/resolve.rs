@@ -12,7 +12,7 @@ pub(crate) struct Resolve {
 
 impl Resolve {
     /// Full floats: exitance keeps the host's unit, and sunlight in lux overflows half floats.
-    pub const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
+    const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
 
     pub fn new(device: &wgpu::Device) -> Self {
         let texture = wgpu::BindingType::StorageTexture {
@@ -23,6 +23,22 @@ impl Resolve {
         let layout = gpu::layout(device, "resolve", wgpu::ShaderStages::COMPUTE, &[READ, READ, texture]);
         let module = gpu::module(device, translume_shaders::RESOLVE);
         Self { resolve: gpu::compute_pipeline(device, &layout, &module, "resolve"), layout }
+    }
+
+    /// The texture that is written: `size`² texels.
+    pub fn texture(&self, device: &wgpu::Device, size: u32) -> wgpu::Texture {
+        device.create_texture(&wgpu::TextureDescriptor {
+            label: Some("exitance"),
+            size: wgpu::Extent3d { width: size, height: size, depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: Self::FORMAT,
+            usage: wgpu::TextureUsages::STORAGE_BINDING
+                | wgpu::TextureUsages::TEXTURE_BINDING
+                | wgpu::TextureUsages::COPY_SRC,
+            view_formats: &[],
+        })
     }
 
     pub fn bind(

@@ -3,9 +3,13 @@
 //! reads  texel positions, normals, irradiance, clusters, kernel table      writes  exitance per texel, linear RGB
 //! twin   `translume_reference::scatter`                                    WGSL    `scatter.wgsl`
 
-use crate::body::Buffers;
+use crate::Error;
+use crate::buffers::Buffers;
 use crate::gpu::{self, FLOAT_TEXTURE, READ, UNIFORM_ARRAY, UNIFORM_STRIDE, WRITE};
+use crate::kernel_table::KernelTableLayout;
 use crate::layout::ScatterLayout;
+use crate::profile::Dipole;
+use crate::stages::cluster::Tree;
 
 /// How the sum over sources is evaluated.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,6 +29,19 @@ impl Default for Method {
     /// The tree at θ = 0.4.
     fn default() -> Self {
         Self::Tree { theta: 0.4 }
+    }
+}
+
+impl Method {
+    /// Checks the opening angle.
+    pub(crate) fn validate(self) -> Result<(), Error> {
+        match self {
+            Self::Tree { theta } if !(0.05..=2.0).contains(&theta) => Err(Error::Frame {
+                problem: format!("opening angle {theta}"),
+                remedy: "give θ between 0.05 and 2, or use all pairs",
+            }),
+            _ => Ok(()),
+        }
     }
 }
 
@@ -66,6 +83,36 @@ impl Scatter {
             wgpu::BindingResource::TextureView(kernel_table),
         ];
         gpu::bind(device, "scatter", &self.layout, &resources)
+    }
+
+    /// What the shader needs to know of a body of this medium.
+    pub fn layout(
+        table: KernelTableLayout,
+        channels: &[Dipole; 3],
+        tree: &Tree,
+        method: Method,
+    ) -> ScatterLayout {
+        let theta = match method {
+            Method::Tree { theta } => theta,
+            Method::AllPairs => 0.0,
+        };
+        let scattering = channels.iter().filter(|dipole| dipole.total() > 0.0);
+        let z_r = scattering.map(|dipole| dipole.z_r as f32).fold(1e15, f32::min);
+        let mut offsets = [[0; 4]; 4];
+        for (level, offset) in tree.offsets.iter().enumerate() {
+            offsets[level / 4][level % 4] = *offset;
+        }
+        ScatterLayout {
+            table,
+            texel_count: tree.counts[0],
+            first_source: 0,
+            source_count: 0,
+            top_level: tree.top_level(),
+            theta_squared: theta * theta,
+            z_r_squared: z_r * z_r,
+            padding: [0; 2],
+            offsets,
+        }
     }
 
     /// One uniform per dispatch of all pairs, ready for dynamic offsets; the tree uses the first.

@@ -4,7 +4,7 @@
 //! twin   `translume_reference::Surface`, by tracing rays   WGSL    `shadow.wgsl`
 
 use crate::Light;
-use crate::body::Buffers;
+use crate::buffers::Buffers;
 use crate::gpu::{self, UNIFORM_ARRAY, UNIFORM_STRIDE};
 use crate::layout::MAX_VIEWS;
 use glam::camera::rh::{proj, view};

@@ -1,0 +1,76 @@
+//! The kernel table on the GPU: sized for a body, written for a medium.
+
+use crate::kernel_table::{self, KernelRange, KernelTableLayout};
+use crate::profile::Dipole;
+use translume_mesh::{Atlas, Mesh};
+
+/// How much longer than the body's diagonal the table reaches.
+const REACH: f32 = 4.0;
+/// Texels this much narrower than a typical one still find themselves in the table.
+const NARROW_TEXELS: f32 = 16.0;
+
+pub(crate) struct KernelTexture {
+    texture: wgpu::Texture,
+    pub view: wgpu::TextureView,
+    /// Rms radius of a typical texel over the diagonal of the rest pose. The range of the table keeps these proportions at any scale,
+    /// and so its size.
+    relative_spread: f32,
+    columns: u32,
+    rows: u32,
+    /// The longest diagonal the content was made for, mm.
+    diagonal: f32,
+}
+
+impl KernelTexture {
+    pub fn new(device: &wgpu::Device, mesh: &Mesh, atlas: &Atlas) -> Self {
+        let covered = atlas.texels.iter().filter(|texel| texel.area > 0.0).count().max(1);
+        let area: f32 = atlas.texels.iter().map(|texel| texel.area).sum();
+        let spread = (area / covered as f32 / std::f32::consts::TAU).sqrt();
+        let relative_spread = spread / mesh.diagonal().max(f32::MIN_POSITIVE);
+        let KernelTableLayout { columns, rows, .. } = KernelTableLayout::new(range(1.0, relative_spread));
+        let texture = device.create_texture(&wgpu::TextureDescriptor {
+            label: Some("kernel table"),
+            size: wgpu::Extent3d { width: columns, height: 2 * rows, depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: wgpu::TextureFormat::Rgba32Float,
+            usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+            view_formats: &[],
+        });
+        let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
+        Self { texture, view, relative_spread, columns, rows, diagonal: 0.0 }
+    }
+
+    /// Whether the content serves a body of this diagonal, mm.
+    pub fn fits(&self, diagonal: f32) -> bool {
+        (0.25..=1.0).contains(&(diagonal / self.diagonal))
+    }
+
+    /// Computes the content for a medium. A body that outgrew the old content gets room to grow.
+    pub fn write(&mut self, queue: &wgpu::Queue, channels: &[Dipole; 3], diagonal: f32) -> KernelTableLayout {
+        if !self.fits(diagonal) {
+            self.diagonal = 1.25 * diagonal.max(f32::MIN_POSITIVE);
+        }
+        let fresh = KernelTableLayout::new(range(self.diagonal, self.relative_spread));
+        // The same proportions at another scale may round to another cell.
+        let table = KernelTableLayout { columns: self.columns, rows: self.rows, ..fresh };
+        let texels = kernel_table::build(table, channels);
+        let rows = wgpu::TexelCopyBufferLayout {
+            offset: 0,
+            bytes_per_row: Some(16 * table.columns),
+            rows_per_image: None,
+        };
+        queue.write_texture(
+            self.texture.as_image_copy(),
+            bytemuck::cast_slice(&texels),
+            rows,
+            self.texture.size(),
+        );
+        table
+    }
+}
+
+fn range(diagonal: f32, relative_spread: f32) -> KernelRange {
+    KernelRange { least_spread: diagonal * relative_spread / NARROW_TEXELS, longest: REACH * diagonal }
+}
