@@ -1,9 +1,10 @@
 //! Hard cases (DESIGN section 6): whatever comes in, what goes out is finite, not negative, and within what the row allows.
 
 use glam::{Mat4, Vec3};
+use std::sync::Arc;
 use translume::{DirectionalLight, Light, Medium, PointLight};
 use translume_tests::{
-    Check, Fixture, Pose, at_most, creature, gpu, holds, luminous, notices, sphere_with, sum,
+    Check, Fixture, Model, Pose, at_most, creature, gpu, holds, luminous, notices, sphere_with, sum,
 };
 
 /// What must hold of Σ B·A beside being finite and not negative.
@@ -92,8 +93,9 @@ fn rows() -> Vec<Row> {
     ]
 }
 
-fn bounded(row: &Row, atlas: u32) -> Check {
-    let mut fixture = Fixture::new(&sphere_with(atlas), |d| {
+fn bounded(row: &Row, model: &Arc<Model>) -> Check {
+    let atlas = model.atlas.size;
+    let mut fixture = Fixture::new(model, |d| {
         (d.medium, d.mm_per_unit) = (row.medium, row.mm_per_unit);
         d.shadow_resolution = 64;
     });
@@ -124,23 +126,26 @@ fn sane(name: &str, values: &[[f64; 3]]) -> Check {
 
 #[test]
 fn hard_cases_stay_finite_and_bounded() {
+    let model = sphere_with(32);
     for row in rows() {
-        holds(bounded(&row, 32));
+        holds(bounded(&row, &model));
     }
 }
 
 #[test]
 fn the_smallest_atlas_will_do() {
+    let model = sphere_with(16);
     for name in ["as usual", "index matched", "stretched fourfold", "no light"] {
         let row = rows().into_iter().find(|row| row.name == name).unwrap();
-        holds(bounded(&row, 16));
+        holds(bounded(&row, &model));
     }
 }
 
 #[test]
 fn an_excess_is_noticed() {
-    notices(bounded(&usual("light where none is allowed", |r| r.energy = Energy::None), 32));
-    notices(bounded(&usual("more light than allowed", |r| r.energy = Energy::AtMost(-0.9)), 32));
+    let model = sphere_with(32);
+    notices(bounded(&usual("light where none is allowed", |r| r.energy = Energy::None), &model));
+    notices(bounded(&usual("more light than allowed", |r| r.energy = Energy::AtMost(-0.9)), &model));
     notices(sane("NaN", &[[0.0, f64::NAN, 0.0]]));
     notices(sane("negative", &[[0.0, -1e-9, 0.0]]));
 }
