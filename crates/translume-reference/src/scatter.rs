@@ -1,7 +1,7 @@
 //! Scatter: radiant exitance of texels from all pairs, without a tree (twin of the GPU's scatter stage).
 //!
 //! B_i = Σ_j E_j A_j K̄(|p_i − p_j|, s_j), where K̄ is the profile averaged over a flat disc about the source whose rms
-//! radius s gives it the texel's area. The disc lies along the connecting line or faces it; with c the cosine between
+//! radius s gives it the texel's area, a little narrower where source and receiver are not the same texel. The disc lies along the connecting line or faces it; with c the cosine between
 //! the line and the source's normal, K̄ = K_lying (1 − c²) + K_facing c².
 
 use std::f64::consts::{PI, SQRT_2};
@@ -14,19 +14,26 @@ use crate::gather::Source;
 use crate::quadrature::integrate;
 use crate::rgb::accumulate;
 
+/// How much narrower than a disc of its own area a texel looks to any other texel. Discs in a square lattice overlap along the axes, and
+/// a receiver in the middle of its own disc would see its neighbours reach into it. The factor makes the sum over an evenly
+/// lit plane close within 0.5 % for any mean free path over texel size, where 1 leaves 1.9 %.
+const NEIGHBOUR_NARROWING: f64 = 0.945;
+
 /// Exitance, W/m², at the texels named by `receivers`, from all texels.
 ///
 /// # Panics
 /// If a receiver is not the index of a texel.
 #[must_use]
 pub fn all_pairs(sources: &[Source], dipoles: &[Dipole; 3], receivers: &[usize]) -> Vec<[f64; 3]> {
-    let lit: Vec<&Source> = sources.iter().filter(|s| s.power() != [0.0; 3]).collect();
+    let lit: Vec<(usize, &Source)> =
+        sources.iter().enumerate().filter(|(_, s)| s.power() != [0.0; 3]).collect();
     let exitance = |&receiver: &usize| {
         let at = DVec3::from(sources[receiver].position);
         let mut sum = [0.0; 3];
-        for source in &lit {
+        for (index, source) in &lit {
             let power = source.power();
-            let kernel = averaged_kernel(dipoles, at, source);
+            let narrowing = if *index == receiver { 1.0 } else { NEIGHBOUR_NARROWING };
+            let kernel = averaged_kernel(dipoles, at, source, narrowing);
             accumulate(&mut sum, std::array::from_fn(|k| kernel[k] * power[k]), 1.0);
         }
         sum
@@ -35,11 +42,11 @@ pub fn all_pairs(sources: &[Source], dipoles: &[Dipole; 3], receivers: &[usize])
 }
 
 /// K̄ of each channel, 1/mm², at a point for one source.
-fn averaged_kernel(dipoles: &[Dipole; 3], at: DVec3, source: &Source) -> [f64; 3] {
+fn averaged_kernel(dipoles: &[Dipole; 3], at: DVec3, source: &Source, narrowing: f64) -> [f64; 3] {
     let offset = at - DVec3::from(source.position);
     let r = offset.length();
     let cos = if r > 0.0 { offset.dot(source.normal.into()) / r } else { 0.0 };
-    let radius = SQRT_2 * source.spread();
+    let radius = SQRT_2 * source.spread() * narrowing;
     std::array::from_fn(|k| {
         let (lying, facing) = disc_average(&dipoles[k], r, radius);
         lying * (1.0 - cos * cos) + facing * cos * cos
@@ -226,7 +233,8 @@ mod tests {
         let source = Source { position: [1.0, 2.0, 3.0], normal, area: PI, irradiance: [1.0; 3] };
         let (lying, facing) = disc_average(&dipoles[0], 1.5, 1.0);
         assert!((lying / facing - 1.0).abs() > 0.05, "the two must differ for this test to mean anything");
-        let seen = |offset: DVec3| averaged_kernel(&dipoles, DVec3::new(1.0, 2.0, 3.0) + offset, &source)[0];
+        let seen =
+            |offset: DVec3| averaged_kernel(&dipoles, DVec3::new(1.0, 2.0, 3.0) + offset, &source, 1.0)[0];
         assert_rel(seen(DVec3::new(0.0, 1.5, 0.0)), facing, 1e-12, "above");
         assert_rel(seen(DVec3::new(0.0, -1.5, 0.0)), facing, 1e-12, "below");
         assert_rel(seen(DVec3::new(1.5, 0.0, 0.0)), lying, 1e-12, "beside");

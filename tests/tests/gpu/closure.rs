@@ -57,9 +57,10 @@ fn closure(ratio: f32, bound: f64, method: Method, gain: f64) -> Check {
     at_most(&format!("closure: plane, mean free path of {ratio} texels, {method:?}"), error, bound)
 }
 
-/// DESIGN section 5, closure. Sources are discs, which overlap and leave gaps where texels, being squares, do not: that shows where
-/// the profile falls off over a fraction of a texel. Measured 5e-7, 0.9 %, 1.9 %, 0.1 %, 0.03 %.
-const BOUNDS: [(f32, f64); 5] = [(0.01, 1e-5), (0.1, 0.011), (0.3, 0.021), (1.0, 2e-3), (3.0, 1e-3)];
+/// Sources are discs, which overlap and leave gaps where texels, being squares, do not: that shows where the profile falls off over a
+/// fraction of a texel. Neighbours are narrowed so that the largest error over these mean free paths is least. Measured 5e-7, 0.22 %,
+/// 0.49 %, 0.46 %, 0.04 %.
+const BOUNDS: [(f32, f64); 5] = [(0.01, 1e-5), (0.1, 3e-3), (0.3, 5.5e-3), (1.0, 5e-3), (3.0, 1e-3)];
 
 /// What the tree may add at θ = 0.4, the same way at every texel of an evenly lit plane; measured 1.2 % (mean free path of 3 texels).
 const TREE: f64 = 0.015;
@@ -74,7 +75,7 @@ fn a_plane_returns_the_total_reflectance() {
 
 #[test]
 fn a_kernel_half_a_per_cent_off_is_noticed() {
-    for (ratio, bound) in [BOUNDS[0], BOUNDS[3]] {
+    for (ratio, bound) in [BOUNDS[0], BOUNDS[4]] {
         notices(closure(ratio, bound, Method::AllPairs, 1.005));
         notices(closure(ratio, bound, Method::AllPairs, 0.995));
     }
