@@ -28,7 +28,7 @@ pub struct Arguments {
 pub enum Command {
     /// Render a model or a scene to a PNG (tone-mapped sRGB) or an EXR (linear radiance).
     #[command(after_help = EXAMPLES)]
-    Render(Render),
+    Render(Box<Render>),
     /// Tell what a model holds and how it unwraps.
     #[command(after_help = EXAMPLES)]
     Inspect(Inspect),

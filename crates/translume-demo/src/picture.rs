@@ -123,7 +123,7 @@ impl Output {
     /// Checks the name's ending and that the directory is there.
     pub fn new(path: &Path) -> Result<Self, Error> {
         let fail = |problem: &str| Err(Error::Output { path: path.to_owned(), problem: problem.to_owned() });
-        let ending = path.extension().map(|ending| ending.to_ascii_lowercase());
+        let ending = path.extension().map(std::ffi::OsStr::to_ascii_lowercase);
         let format = match ending.as_deref().and_then(|ending| ending.to_str()) {
             Some("png") => Format::Png,
             Some("exr") => Format::Exr,

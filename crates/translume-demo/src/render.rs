@@ -143,7 +143,7 @@ fn from_scene(path: &Path, arguments: &Render) -> Result<Setup, Error> {
     let morph =
         morph_weights(if arguments.morph.is_empty() { &scene.morph } else { &arguments.morph }, mesh)?;
     let gloss = gloss(arguments.gloss.unwrap_or(0.0))?;
-    Ok(Setup { flat_normals, medium, mm_per_unit, lights, camera, morph, gloss, model })
+    Ok(Setup { model, flat_normals, medium, mm_per_unit, lights, camera, morph, gloss })
 }
 
 fn from_model(name: &str, arguments: &Render) -> Result<Setup, Error> {

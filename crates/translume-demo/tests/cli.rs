@@ -1,5 +1,11 @@
 //! The command as people use it: what it writes, and what it says when it cannot.
 
+#![allow(
+    clippy::unwrap_used,
+    clippy::panic,
+    reason = "a test may stop where it cannot go on, in its helpers too"
+)]
+
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
@@ -130,7 +136,7 @@ fn read_exr(path: &Path) -> (usize, Vec<[f32; 3]>) {
         path,
         |size, _| (size.width(), vec![[0.0_f32; 3]; size.area()]),
         |(width, pixels), at, (r, g, b, _): (f32, f32, f32, f32)| {
-            pixels[at.y() * *width + at.x()] = [r, g, b]
+            pixels[at.y() * *width + at.x()] = [r, g, b];
         },
     )
     .unwrap();

@@ -1,4 +1,4 @@
-//! Hard cases (DESIGN section 6): whatever comes in, what goes out is finite, not negative, and within what the row allows.
+//! Hard cases: whatever comes in, what goes out is finite, not negative, and within what the row allows.
 
 use glam::{Mat4, Vec3};
 use std::sync::Arc;
