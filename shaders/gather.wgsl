@@ -2,6 +2,7 @@
 
 // Samples along each side of a texel's square; shadow edges are filtered at this footprint.
 const FOOTPRINT: u32 = 4u;
+
 struct Texel {
     triangle: u32,
     barycentric_1: f32,
@@ -75,20 +76,12 @@ fn irradiance(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) grou
 }
 
 fn direct(index: u32, receiver: Receiver) -> vec3f {
-    let kind = lighting.lights[index].kind;
-    var to_light = lighting.lights[index].vector;
-    var strength = lighting.lights[index].colour;
-    if kind == POINT {
-        to_light -= receiver.position;
-        // A light on the surface itself would be infinitely bright in one point: within the texel it shines as from its rim.
-        let distance_squared = max(dot(to_light, to_light), max(receiver.half_width * receiver.half_width, 1e-12));
-        to_light = safe_normalize(to_light, receiver.normal);
-        strength /= distance_squared;
-    }
-    let cosine = dot(receiver.normal, to_light);
+    // A light on the surface itself would be infinitely bright in one point: within the texel it shines as from its rim.
+    let arriving = arrival(index, receiver.position, receiver.half_width * receiver.half_width, receiver.normal);
+    let cosine = dot(receiver.normal, arriving.to_light);
     if cosine <= 0.0 { return vec3f(0.0); }
     let entered = fresnel_transmittance(lighting.eta, cosine) * cosine * region_fraction(index, receiver);
-    return strength * (entered * visibility(index, receiver, to_light));
+    return arriving.strength * (entered * visibility(index, receiver, arriving.to_light));
 }
 
 // Part of the texel's square inside the box where the light enters.
@@ -122,12 +115,6 @@ fn ambient(index: u32, normal: vec3f) -> vec3f {
     let low = lighting.ambients[index].table[cell / 4u][cell % 4u];
     let high = lighting.ambients[index].table[(cell + 1u) / 4u][(cell + 1u) % 4u];
     return lighting.ambients[index].radiance * mix(low, high, x - f32(cell));
-}
-
-fn safe_normalize(v: vec3f, fallback: vec3f) -> vec3f {
-    let length_squared = dot(v, v);
-    if length_squared > 0.0 { return v * inverseSqrt(length_squared); }
-    return fallback;
 }
 
 fn any_perpendicular(n: vec3f) -> vec3f {

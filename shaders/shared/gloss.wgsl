@@ -21,22 +21,15 @@ fn ggx(eta: f32, roughness: f32, normal: vec3f, to_eye: vec3f, to_light: vec3f) 
 fn gloss(roughness: f32, position: vec3f, normal: vec3f, face: vec3f, to_eye: vec3f) -> vec3f {
     var sum = vec3f(0.0);
     for (var k = 0u; k < lighting.light_count; k++) {
-        var to_light = lighting.lights[k].vector;
-        var strength = lighting.lights[k].colour;
-        if lighting.lights[k].kind == POINT {
-            to_light -= position;
-            let distance2 = max(dot(to_light, to_light), 1e-12);
-            to_light *= inverseSqrt(distance2);
-            strength /= distance2;
-        }
-        let reflected = ggx(lighting.eta, roughness, normal, to_eye, to_light);
+        let arriving = arrival(k, position, 0.0, normal);
+        let reflected = ggx(lighting.eta, roughness, normal, to_eye, arriving.to_light);
         if reflected > 0.0 {
             var lit = 1.0;
             if lighting.lights[k].first_view != NO_SHADOW {
-                let view = shadow_view(k, to_light);
-                lit = lit_at(view, lift(view, position, face, to_light, 0.0));
+                let view = shadow_view(k, arriving.to_light);
+                lit = lit_at(view, lift(view, position, face, arriving.to_light, 0.0));
             }
-            sum += strength * (reflected * lit);
+            sum += arriving.strength * (reflected * lit);
         }
     }
     let mirrored = reflect(-to_eye, normal);

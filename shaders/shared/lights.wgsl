@@ -1,4 +1,4 @@
-// The lights of a frame, as every stage that sees them reads them.
+// The lights of a frame, as every stage that sees them reads them. The including module declares the uniform `lighting`.
 
 const DIRECTIONAL: u32 = 0u;
 const POINT: u32 = 1u;
@@ -55,4 +55,29 @@ struct Gather {
     lights: array<Light, 64>,
     views: array<ShadowView, 64>,
     ambients: array<Ambient, 8>,
+}
+
+// What comes from a directional or point light.
+struct Arrival {
+    // Unit vector.
+    to_light: vec3f,
+    // Irradiance on a surface that faces the light.
+    strength: vec3f,
+}
+
+// nearest_squared: least distance, squared, that the falloff of a point light knows, mm²
+// fallback: direction towards a light that lies on the position itself
+fn arrival(index: u32, position: vec3f, nearest_squared: f32, fallback: vec3f) -> Arrival {
+    let light = lighting.lights[index].vector;
+    let strength = lighting.lights[index].colour;
+    if lighting.lights[index].kind != POINT { return Arrival(light, strength); }
+    let offset = light - position;
+    let distance_squared = max(dot(offset, offset), max(nearest_squared, 1e-12));
+    return Arrival(safe_normalize(offset, fallback), strength / distance_squared);
+}
+
+fn safe_normalize(v: vec3f, fallback: vec3f) -> vec3f {
+    let length_squared = dot(v, v);
+    if length_squared > 0.0 { return v * inverseSqrt(length_squared); }
+    return fallback;
 }

@@ -32,10 +32,10 @@ pub struct Body {
     profile: Profile,
     method: Method,
     model: Mat4,
-    winding: f32,
+    /// [`Profile::exit_scale`] of profile and medium: an integral too long for every picture.
+    pub(crate) exit_scale: f32,
     weights: Vec<f32>,
     lights: Vec<Light>,
-    corners: [Vec3; 8],
     view_count: u32,
     pending: StageSet,
     /// Whether the kernel table no longer fits the medium, or the scatter uniforms the method.
@@ -91,10 +91,9 @@ impl Body {
             profile,
             method,
             model: Mat4::IDENTITY,
-            winding: 1.0,
+            exit_scale: profile.exit_scale(medium.ior),
             weights: vec![0.0; mesh.targets.len()],
             lights: Vec::new(),
-            corners: [Vec3::ZERO; 8],
             view_count: 0,
             pending: StageSet::default(),
             scatter_stale: true,
@@ -157,13 +156,13 @@ impl Body {
             queue.write_buffer(&self.buffers.weights, 0, bytemuck::cast_slice(&weights));
             self.pending.insert(StageSet::from_stage_on(Stage::Deform));
         }
-        (self.model, self.winding, self.corners) = (model, winding, corners);
+        self.model = model;
         self.weights = weights;
         self.lights.clear();
         self.lights.extend_from_slice(lights);
         self.never_prepared = false;
         self.surface_stale = false;
-        self.refresh_kernel(queue);
+        self.refresh_kernel(queue, frame::diagonal(&corners));
         Ok(())
     }
 
@@ -218,12 +217,14 @@ impl Body {
         self.scatter_stale |= medium != self.medium;
         self.surface_stale |= medium.ior != self.medium.ior;
         self.medium = medium;
+        self.exit_scale = self.profile.exit_scale(medium.ior);
         Ok(())
     }
 
     /// Changes the profile. Today's profiles differ in how light leaves towards the eye, so no stage has to run again.
     pub fn set_profile(&mut self, profile: Profile) {
         self.profile = profile;
+        self.exit_scale = profile.exit_scale(self.medium.ior);
     }
 
     /// Changes how the scatter sum is evaluated; the next frame scatters anew.
@@ -293,8 +294,7 @@ impl Body {
     }
 
     /// Makes the kernel table anew where the medium changed or the body outgrew it.
-    fn refresh_kernel(&mut self, queue: &wgpu::Queue) {
-        let diagonal = frame::diagonal(&self.corners);
+    fn refresh_kernel(&mut self, queue: &wgpu::Queue, diagonal: f32) {
         if !self.scatter_stale && self.kernel.fits(diagonal) {
             return;
         }

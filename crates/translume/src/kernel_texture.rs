@@ -1,5 +1,6 @@
 //! The kernel table on the GPU: sized for a body, written for a medium.
 
+use crate::gpu;
 use crate::kernel_table::{self, KernelRange, KernelTableLayout};
 use crate::profile::Dipole;
 use translume_mesh::{Atlas, Mesh};
@@ -28,16 +29,8 @@ impl KernelTexture {
         let spread = (area / covered as f32 / std::f32::consts::TAU).sqrt();
         let relative_spread = spread / mesh.diagonal().max(f32::MIN_POSITIVE);
         let KernelTableLayout { columns, rows, .. } = KernelTableLayout::new(range(1.0, relative_spread));
-        let texture = device.create_texture(&wgpu::TextureDescriptor {
-            label: Some("kernel table"),
-            size: wgpu::Extent3d { width: columns, height: 2 * rows, depth_or_array_layers: 1 },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format: wgpu::TextureFormat::Rgba32Float,
-            usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
-            view_formats: &[],
-        });
+        let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
+        let texture = gpu::float_texture(device, "kernel table", (columns, 2 * rows), usage);
         let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
         Self { texture, view, relative_spread, columns, rows, diagonal: 0.0 }
     }

@@ -118,7 +118,7 @@ impl CompositeView {
                 .to_cols_array_2d(),
             eye: camera.eye.map(|x| x * body.mm_per_unit),
             eta: body.medium().ior,
-            exit_scale: body.profile().exit_scale(body.medium().ior),
+            exit_scale: body.exit_scale,
             roughness: match gloss {
                 Gloss::None => 0.0,
                 // Below this the highlight of a point is smaller than a pixel and only flickers.

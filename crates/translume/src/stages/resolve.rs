@@ -11,13 +11,11 @@ pub(crate) struct Resolve {
 }
 
 impl Resolve {
-    /// Full floats: exitance keeps the host's unit, and sunlight in lux overflows half floats.
-    const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
-
     pub fn new(device: &wgpu::Device) -> Self {
         let texture = wgpu::BindingType::StorageTexture {
             access: wgpu::StorageTextureAccess::WriteOnly,
-            format: Self::FORMAT,
+            // Full floats: exitance keeps the host's unit, and sunlight in lux overflows half floats.
+            format: wgpu::TextureFormat::Rgba32Float,
             view_dimension: wgpu::TextureViewDimension::D2,
         };
         let layout = gpu::layout(device, "resolve", wgpu::ShaderStages::COMPUTE, &[READ, READ, texture]);
@@ -27,18 +25,10 @@ impl Resolve {
 
     /// The texture that is written: `size`² texels.
     pub fn texture(&self, device: &wgpu::Device, size: u32) -> wgpu::Texture {
-        device.create_texture(&wgpu::TextureDescriptor {
-            label: Some("exitance"),
-            size: wgpu::Extent3d { width: size, height: size, depth_or_array_layers: 1 },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format: Self::FORMAT,
-            usage: wgpu::TextureUsages::STORAGE_BINDING
-                | wgpu::TextureUsages::TEXTURE_BINDING
-                | wgpu::TextureUsages::COPY_SRC,
-            view_formats: &[],
-        })
+        let usage = wgpu::TextureUsages::STORAGE_BINDING
+            | wgpu::TextureUsages::TEXTURE_BINDING
+            | wgpu::TextureUsages::COPY_SRC;
+        gpu::float_texture(device, "exitance", (size, size), usage)
     }
 
     pub fn bind(
