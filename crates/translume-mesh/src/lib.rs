@@ -7,6 +7,7 @@
 //! | [`repair`] | drops what cannot carry light, counts what it dropped |
 //! | [`normals`] | vertex normals at rest, and which triangles make them up on any pose |
 //! | [`atlas`] | charts and packing (by `uvunwrap`), the one-time raster into texels, gutters, texel order |
+//! | [`rig`] | nodes, joints, animations: from a time to the weights and matrices of a pose |
 //! | [`builtin`] | sphere, torus knot, Newell's teapot, and the creature that melts into an egg |
 //!
 //! Nothing here knows a GPU. Lengths are the model's own units throughout; `translume` converts to millimetres.
@@ -19,10 +20,11 @@ pub mod load;
 pub mod mesh;
 pub mod normals;
 pub mod repair;
+pub mod rig;
 mod weld;
 
 pub use atlas::{Atlas, AtlasError, AtlasReport, AtlasVertex, Texel};
 #[cfg(feature = "unwrap")]
 pub use atlas::{AtlasOptions, Progress};
-pub use mesh::{Mesh, MorphTarget};
+pub use mesh::{Influence, Mesh, MorphTarget, Skin};
 pub use repair::{RepairError, RepairReport};

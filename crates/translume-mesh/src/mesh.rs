@@ -14,8 +14,13 @@ pub struct Mesh {
     pub normals: Vec<[f32; 3]>,
     /// Triangles, counter-clockwise seen from outside.
     pub triangles: Vec<[u32; 3]>,
+    /// The file's own texture coordinates, one per corner of each triangle, u to the right and v downwards as in glTF;
+    /// empty where the file has none. Corners and not vertices, so that a vertex on a seam stays one vertex.
+    pub uvs: Vec<[[f32; 2]; 3]>,
     /// Morph targets (blend shapes); each moves every vertex by its weight times a delta.
     pub targets: Vec<MorphTarget>,
+    /// Which joints move each vertex, after the morph targets; `None` for a mesh without a rig.
+    pub skin: Option<Skin>,
 }
 
 /// One blend shape: `position = rest + Σ weight · delta`. Normals follow from the deformed positions.
@@ -25,6 +30,26 @@ pub struct MorphTarget {
     pub name: String,
     /// Displacement of every vertex at weight 1, model units.
     pub position_deltas: Vec<[f32; 3]>,
+}
+
+/// Linear blend skinning: `position = Σ weight · joint matrix · (rest + morph deltas)`.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Skin {
+    /// Number of joints that influences may name; a pose has a matrix for each.
+    pub joints: usize,
+    /// Influences of each vertex, at least 1.
+    pub per_vertex: usize,
+    /// `per_vertex` influences for each vertex in turn; unused ones weigh 0. The weights of a vertex add up to 1.
+    pub influences: Vec<Influence>,
+}
+
+/// One joint's share in a vertex.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Influence {
+    /// The joint, below [`Skin::joints`].
+    pub joint: u32,
+    /// Its share, 0..1.
+    pub weight: f32,
 }
 
 impl Mesh {

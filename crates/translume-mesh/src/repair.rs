@@ -226,13 +226,22 @@ fn drop_triangles(mesh: &mut Mesh, welded: &[u32], report: &mut RepairReport) {
     let min_height = MIN_HEIGHT * f64::from(mesh.diagonal());
     let positions = &mesh.positions;
     let mut seen = HashSet::with_capacity(mesh.triangles.len());
-    mesh.triangles.retain(|triangle| {
+    let keep = |triangle: &[u32; 3]| {
         let flat = height(triangle.map(|v| positions[v as usize])) <= min_height;
         let repeated = !flat && !seen.insert(rotated(triangle.map(|v| welded[v as usize])));
         report.dropped_degenerate += usize::from(flat);
         report.dropped_duplicate += usize::from(repeated);
         !flat && !repeated
-    });
+    };
+    let kept: Vec<bool> = mesh.triangles.iter().map(keep).collect();
+    retain(&mut mesh.triangles, &kept);
+    retain(&mut mesh.uvs, &kept);
+}
+
+/// Keeps the entries that are marked; a list without entries stays so.
+fn retain<T>(list: &mut Vec<T>, kept: &[bool]) {
+    let mut kept = kept.iter();
+    list.retain(|_| kept.next() == Some(&true));
 }
 
 /// Height over the longest edge; 0 for a point.
@@ -283,13 +292,14 @@ fn drop_vertices(mesh: &mut Mesh, report: &mut RepairReport) {
     });
     let renumbered: Vec<u32> = before.collect();
     mesh.triangles.iter_mut().flatten().for_each(|v| *v = renumbered[*v as usize]);
-    let keep_used = |points: &mut Vec<[f32; 3]>| {
-        let mut used = used.iter();
-        points.retain(|_| used.next() == Some(&true));
-    };
-    keep_used(&mut mesh.positions);
-    keep_used(&mut mesh.normals);
-    mesh.targets.iter_mut().for_each(|target| keep_used(&mut target.position_deltas));
+    retain(&mut mesh.positions, &used);
+    retain(&mut mesh.normals, &used);
+    mesh.targets.iter_mut().for_each(|target| retain(&mut target.position_deltas, &used));
+    if let Some(skin) = &mut mesh.skin {
+        let used: Vec<bool> =
+            used.iter().flat_map(|&used| std::iter::repeat_n(used, skin.per_vertex)).collect();
+        retain(&mut skin.influences, &used);
+    }
 }
 
 fn complete_normals(mesh: &mut Mesh, report: &mut RepairReport) {

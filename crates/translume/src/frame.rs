@@ -229,6 +229,7 @@ mod tests {
                 name: String::new(),
                 position_deltas: vec![[5.0, 0.0, 0.0], [-4.0, 0.0, 0.0]],
             }],
+            ..Mesh::default()
         }
     }
 

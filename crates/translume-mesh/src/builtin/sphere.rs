@@ -24,7 +24,7 @@ pub fn sphere(center: [f32; 3], radius: f32, subdivisions: u32) -> Mesh {
         positions: directions.iter().map(|&d| (Vec3::from(center) + radius * d).into()).collect(),
         normals: directions.iter().map(|&d| d.into()).collect(),
         triangles,
-        targets: Vec::new(),
+        ..Mesh::default()
     }
 }
 

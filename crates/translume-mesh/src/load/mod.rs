@@ -12,6 +12,7 @@ use std::path::Path;
 
 use crate::mesh::Mesh;
 use crate::repair::{RepairError, RepairReport, repair};
+use crate::rig::Rig;
 
 /// Extensions that [`load`] reads, in lower case.
 pub const EXTENSIONS: [&str; 3] = ["obj", "gltf", "glb"];
@@ -26,6 +27,8 @@ pub struct Loaded {
     pub repairs: RepairReport,
     /// What a unit of the file is, where the format says so: 1 for glTF (its specification, section 3.4), `None` for OBJ.
     pub metres_per_unit: Option<f32>,
+    /// What moves it, where the file has animations or skins.
+    pub rig: Option<Rig>,
 }
 
 /// Why a file could not be loaded.
@@ -124,7 +127,7 @@ pub fn load(path: &Path) -> Result<Loaded, LoadError> {
     };
     mesh.name = path.file_name().map_or(file, |name| name.to_string_lossy().into_owned());
     let (mesh, repairs) = repair(mesh)?;
-    Ok(Loaded { mesh, repairs, metres_per_unit })
+    Ok(Loaded { mesh, repairs, metres_per_unit, rig: None })
 }
 
 fn read_file(path: &Path) -> Result<Vec<u8>, LoadError> {

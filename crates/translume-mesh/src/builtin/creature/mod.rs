@@ -62,6 +62,7 @@ pub fn creature_with(triangles: usize) -> Mesh {
         positions,
         triangles,
         targets: vec![MorphTarget { name: "egg".into(), position_deltas }],
+        ..Mesh::default()
     }
 }
 
