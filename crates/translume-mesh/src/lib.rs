@@ -25,6 +25,6 @@ mod weld;
 
 pub use atlas::{Atlas, AtlasError, AtlasReport, AtlasVertex, Texel};
 #[cfg(feature = "unwrap")]
-pub use atlas::{AtlasOptions, Progress};
+pub use atlas::{AtlasOptions, ChartSource, Progress};
 pub use mesh::{Influence, Mesh, MorphTarget, Skin};
 pub use repair::{RepairError, RepairReport};

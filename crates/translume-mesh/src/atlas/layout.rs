@@ -6,6 +6,7 @@ use super::raster::Fragments;
 use super::texels::Charted;
 use super::{Atlas, AtlasError, AtlasVertex, figures, gutter, order};
 use crate::mesh::Mesh;
+use crate::weld::weld;
 
 /// How far gutters reach around charts that come from the caller, texels.
 const GUTTER: u32 = 4;
@@ -18,7 +19,7 @@ pub(super) struct Layout {
     /// How far gutters reach, texels.
     pub gutter: u32,
     /// Number of charts, where the unwrapper says so.
-    pub charts: Option<usize>,
+    pub chart_count: Option<usize>,
 }
 
 impl Atlas {
@@ -40,8 +41,8 @@ impl Atlas {
         check_size(size)?;
         check_mesh(mesh)?;
         let start = Stopwatch::start();
-        let mut atlas =
-            Layout { size, vertices, triangles, gutter: GUTTER, charts: None }.assemble(mesh, &|_| true)?;
+        let mut atlas = Layout { size, vertices, triangles, gutter: GUTTER, chart_count: None }
+            .assemble(mesh, &|_| true)?;
         atlas.report.seconds = start.seconds();
         Ok(atlas)
     }
@@ -54,14 +55,12 @@ impl Layout {
         let stage = |name| {
             proceed(name).then_some(()).ok_or_else(|| AtlasError::Cancelled { mesh: mesh.name.clone() })
         };
-        let scale = f64::from(self.size);
-        let uv = |v: u32| DVec2::from(self.vertices[v as usize].uv.map(f64::from)) * scale;
-        let corners: Vec<[DVec2; 3]> = self.triangles.iter().map(|t| t.map(uv)).collect();
+        let corners = self.corners();
         let areas: Vec<f64> = (0..mesh.triangles.len()).map(|t| area(mesh, t)).collect();
         if areas.iter().sum::<f64>() <= 0.0 {
             return Err(AtlasError::Empty { mesh: mesh.name.clone() });
         }
-        let (charts, connected) = connected_charts(self.vertices.len(), &self.triangles);
+        let (charts, connected) = self.charts();
 
         stage("rasterising")?;
         let fragments = Fragments::new(&corners, self.size);
@@ -74,8 +73,8 @@ impl Layout {
         let texels: Vec<_> = order::kd_order(&rest).into_iter().map(|k| unordered[k as usize]).collect();
         let pixels = gutter::fill(&texels, self.size, self.gutter);
 
-        let mut report = figures::measure(&corners, &areas, &fragments, self.size);
-        report.charts = self.charts.unwrap_or(connected);
+        let mut report = figures::measure(mesh, &charted, &fragments);
+        report.charts = self.chart_count.unwrap_or(connected);
         Ok(Atlas {
             size: self.size,
             vertices: self.vertices,
@@ -84,6 +83,21 @@ impl Layout {
             pixels,
             report,
         })
+    }
+
+    /// Corners of the triangles, texel units.
+    pub fn corners(&self) -> Vec<[DVec2; 3]> {
+        let scale = f64::from(self.size);
+        let uv = |v: u32| DVec2::from(self.vertices[v as usize].uv.map(f64::from)) * scale;
+        self.triangles.iter().map(|t| t.map(uv)).collect()
+    }
+
+    /// The chart of each triangle, and how many there are. Triangles that meet at a point of the texture are of one chart.
+    pub fn charts(&self) -> (Vec<u32>, usize) {
+        let places: Vec<_> = self.vertices.iter().map(|v| [v.uv[0], v.uv[1], 0.0]).collect();
+        let welded = weld(&places);
+        let triangles: Vec<_> = self.triangles.iter().map(|t| t.map(|v| welded[v as usize])).collect();
+        connected_charts(self.vertices.len(), &triangles)
     }
 
     fn check(&self, mesh: &Mesh) -> Result<(), AtlasError> {
@@ -136,7 +150,8 @@ pub(super) fn check_mesh(mesh: &Mesh) -> Result<(), AtlasError> {
     Ok(())
 }
 
-fn area(mesh: &Mesh, triangle: usize) -> f64 {
+/// Rest area of a triangle, squared model units.
+pub(super) fn area(mesh: &Mesh, triangle: usize) -> f64 {
     let [a, b, c] = mesh.corners(triangle).map(|p| DVec3::from(p.map(f64::from)));
     (b - a).cross(c - a).length() / 2.0
 }

@@ -3,17 +3,23 @@
 //! The mesh is rasterised into the atlas once, at rest. Each texel remembers its triangle, its barycentric coordinates and
 //! its exact area, so that a deformed texel is three vertex fetches and no raster.
 
+#[cfg(feature = "unwrap")]
+mod boundary;
 mod figures;
 mod gutter;
 mod layout;
 mod order;
+#[cfg(feature = "unwrap")]
+mod own;
 mod raster;
+#[cfg(feature = "unwrap")]
+mod relax;
 mod texels;
 #[cfg(feature = "unwrap")]
 mod unwrap;
 
 #[cfg(feature = "unwrap")]
-pub use unwrap::{AtlasOptions, Progress};
+pub use unwrap::{AtlasOptions, ChartSource, Progress};
 
 /// A mesh laid out in a square texture.
 #[derive(Clone, Debug, PartialEq)]
@@ -71,7 +77,12 @@ pub struct AtlasReport {
     pub area_cv: f64,
     /// 99th percentile, by surface area, of max(ratio, 1/ratio), where ratio is UV area per surface area over its mean.
     pub area_ratio_p99: f64,
-    /// Triangles whose UV winding is reversed.
+    /// Angle distortion ½(σ₁/σ₂ + σ₂/σ₁) of the map from surface to UV, with its singular values σ: mean over the surface
+    /// (Hormann and Greiner 2000). 1 is conformal.
+    pub angle_distortion: f64,
+    /// Length of all edges where charts were cut apart, model units; the surface's own border does not count.
+    pub seam_length: f64,
+    /// Triangles wound against the rest of their chart.
     pub flipped: usize,
     /// Texels covered by more than their own square of triangles.
     pub overlapping_texels: usize,
@@ -120,6 +131,14 @@ pub enum AtlasError {
         padding: u32,
         /// The requested size.
         size: u32,
+    },
+    /// The file's own texture coordinates are not fit for light.
+    #[error("{mesh}: its texture coordinates are not fit for light: {reason}; unwrap it instead")]
+    OwnUvs {
+        /// The mesh's name.
+        mesh: String,
+        /// What is wrong with them.
+        reason: String,
     },
     /// Texture coordinates handed in do not belong to the mesh.
     #[error("{mesh}: {element}: {reason}; unwrap this mesh again")]

@@ -9,6 +9,7 @@ use super::{Atlas, Texel};
 const MIN_DETERMINANT: f64 = 1e-12;
 
 /// The layout in texel units, as the choice of triangles needs it.
+#[derive(Clone, Copy)]
 pub(super) struct Charted<'a> {
     pub size: u32,
     pub corners: &'a [[DVec2; 3]],

@@ -1,11 +1,21 @@
 //! Charts and packing by `uvunwrap`.
 
-use uvunwrap::{Density, Error, MeshInput, Options, Stage};
+use std::collections::HashMap;
+use std::sync::{Mutex, PoisonError};
 
-use super::layout::{Layout, Stopwatch, check_mesh, check_size, connected_charts};
-use super::{Atlas, AtlasError, AtlasVertex};
+use glam::DVec2;
+use rayon::prelude::*;
+use uvunwrap::{Density, Error, MeshInput, Options, Packing, Stage};
+
+use super::layout::{Layout, Stopwatch, area, check_mesh, check_size, connected_charts};
+use super::raster::signed_area;
+use super::relax::Chart;
+use super::{Atlas, AtlasError, AtlasVertex, own};
 use crate::mesh::Mesh;
 use crate::weld::weld;
+
+/// Width of the page on which charts lie while they are evened out, texels. Any will do.
+const DRAFT_PAGE: u32 = 1024;
 
 /// What an atlas shall be like.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -15,18 +25,35 @@ pub struct AtlasOptions {
     /// Empty texels around each chart, so that charts are twice as far apart. Below 2 the rims of neighbouring charts
     /// compete for the same texels, and bilinear filtering may bleed.
     pub padding: u32,
+    /// Where charts come from.
+    pub charts: ChartSource,
+    /// Whether unwrapped charts are relaxed until every texel holds about the same area of the surface.
+    pub equiareal: bool,
+}
+
+/// Where charts come from.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ChartSource {
+    /// The surface is cut and flattened anew: even texels, short seams.
+    #[default]
+    Unwrap,
+    /// The file's own texture coordinates, where they are fit for light: inside [0, 1]², no two triangles on one place, no
+    /// triangle turned over within its chart, two empty texels between charts.
+    Own,
+    /// The file's own texture coordinates where they are fit, else unwrapped.
+    OwnOrUnwrap,
 }
 
 impl Default for AtlasOptions {
     fn default() -> Self {
-        Self { size: 256, padding: 2 }
+        Self { size: 256, padding: 2, charts: ChartSource::Unwrap, equiareal: true }
     }
 }
 
 /// How far a build has come.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Progress {
-    /// What is going on: `segmenting`, `flattening`, `packing`, `splitting`, `rasterising` or `ordering`.
+    /// What is going on: `segmenting`, `flattening`, `evening out`, `packing`, `splitting`, `rasterising` or `ordering`.
     pub stage: &'static str,
     /// Units of work finished in this stage.
     pub done: usize,
@@ -35,7 +62,7 @@ pub struct Progress {
 }
 
 impl Atlas {
-    /// Unwraps a clean mesh into one square texture and rasterises it. Deterministic on one machine: the unwrapper's linear
+    /// Lays a clean mesh out in one square texture and rasterises it. Deterministic on one machine: the unwrapper's linear
     /// algebra may differ in the last bits between processor families.
     ///
     /// `progress` may run on worker threads, never twice at once; when it returns `false` the build ends with
@@ -43,7 +70,8 @@ impl Atlas {
     ///
     /// # Errors
     /// [`AtlasError::Size`] and [`AtlasError::Padding`] for options out of range, [`AtlasError::DoesNotFit`],
-    /// [`AtlasError::Empty`], [`AtlasError::Unwrap`] for a mesh that is not clean, [`AtlasError::Cancelled`].
+    /// [`AtlasError::OwnUvs`] where the file's texture coordinates are asked for and not fit, [`AtlasError::Empty`],
+    /// [`AtlasError::Unwrap`] for a mesh that is not clean, [`AtlasError::Cancelled`].
     pub fn build(
         mesh: &Mesh,
         options: &AtlasOptions,
@@ -55,29 +83,58 @@ impl Atlas {
         }
         check_mesh(mesh)?;
         let start = Stopwatch::start();
-        let layout = unwrap(mesh, options, &progress)?;
+        let layout = match options.charts {
+            ChartSource::Unwrap => unwrap(mesh, options, &progress)?,
+            ChartSource::Own => own::layout(mesh, options)?,
+            ChartSource::OwnOrUnwrap => match own::layout(mesh, options) {
+                Ok(layout) => layout,
+                Err(AtlasError::OwnUvs { .. }) => unwrap(mesh, options, &progress)?,
+                Err(other) => return Err(other),
+            },
+        };
         let mut atlas = layout.assemble(mesh, &|stage| progress(Progress { stage, done: 0, total: None }))?;
         atlas.report.seconds = start.seconds();
         Ok(atlas)
     }
 }
 
+/// Charts by `uvunwrap`, evened out where the options say so, and packed.
 fn unwrap(
     mesh: &Mesh,
     options: &AtlasOptions,
     progress: &(impl Fn(Progress) -> bool + Sync),
 ) -> Result<Layout, AtlasError> {
-    let indices = mesh.triangles.as_flattened();
-    let unwrapped = uvunwrap::generate_with_progress(
-        &[MeshInput::new(&mesh.positions, indices)],
-        &Options {
-            density: Density::Auto { page_size: options.size },
-            padding: options.padding,
-            ..Options::default()
-        },
-        |p| progress(Progress { stage: stage_name(p.stage), done: p.done, total: p.total }),
-    )
-    .map_err(|error| refusal(mesh, options.size, &error))?;
+    if !options.equiareal {
+        let whole = MeshInput::new(&mesh.positions, mesh.triangles.as_flattened());
+        return pack(mesh, whole, options, |p| progress(told(p, stage_name(p.stage))));
+    }
+    let draft = Draft::new(mesh, options, progress)?;
+    let uvs = draft.evened_out(mesh, progress)?;
+    let positions: Vec<_> = draft.xrefs.iter().map(|&v| mesh.positions[v as usize]).collect();
+    let charts =
+        MeshInput { existing_uvs: Some(&uvs), ..MeshInput::new(&positions, draft.triangles.as_flattened()) };
+    let mut layout = pack(mesh, charts, options, |p| match p.stage {
+        Stage::Segmenting | Stage::Parameterizing => progress(in_between()),
+        _ => progress(told(p, stage_name(p.stage))),
+    })?;
+    layout.vertices.iter_mut().for_each(|v| v.xref = draft.xrefs[v.xref as usize]);
+    Ok(layout)
+}
+
+/// Packs charts into one page, cutting and flattening first where there are none yet.
+fn pack(
+    mesh: &Mesh,
+    input: MeshInput<'_>,
+    options: &AtlasOptions,
+    progress: impl Fn(uvunwrap::Progress) -> bool + Sync,
+) -> Result<Layout, AtlasError> {
+    let packing = Options {
+        density: Density::Auto { page_size: options.size },
+        padding: options.padding,
+        ..Options::default()
+    };
+    let unwrapped = uvunwrap::generate_with_progress(&[input], &packing, progress)
+        .map_err(|error| refusal(mesh, options.size, &error))?;
     if unwrapped.page_count > 1 {
         return Err(AtlasError::DoesNotFit {
             mesh: mesh.name.clone(),
@@ -95,10 +152,121 @@ fn unwrap(
             .iter()
             .map(|v| AtlasVertex { xref: v.xref, uv: [v.uv[0] * used[0], v.uv[1] * used[1]] })
             .collect(),
-        triangles: output.indices.chunks_exact(3).map(|t| [t[0], t[1], t[2]]).collect(),
+        triangles: output.indices.as_chunks().0.to_vec(),
         gutter: options.padding + 2,
-        charts: Some(unwrapped.chart_count as usize),
+        chart_count: Some(unwrapped.chart_count as usize),
     })
+}
+
+/// Charts that are flat and not yet where they will stay.
+struct Draft {
+    /// Mesh vertex of each point.
+    xrefs: Vec<u32>,
+    points: Vec<DVec2>,
+    /// For every point the first at the same place: copies within a chart have to stay together.
+    welded: Vec<u32>,
+    triangles: Vec<[u32; 3]>,
+}
+
+impl Draft {
+    fn new(
+        mesh: &Mesh,
+        options: &AtlasOptions,
+        progress: &(impl Fn(Progress) -> bool + Sync),
+    ) -> Result<Self, AtlasError> {
+        let flat = uvunwrap::generate_with_progress(
+            &[MeshInput::new(&mesh.positions, mesh.triangles.as_flattened())],
+            &Options {
+                density: Density::Auto { page_size: DRAFT_PAGE },
+                packing: Packing::Fast,
+                ..Options::default()
+            },
+            |p| match p.stage {
+                Stage::Segmenting | Stage::Parameterizing => progress(told(p, stage_name(p.stage))),
+                _ => progress(in_between()),
+            },
+        )
+        .map_err(|error| refusal(mesh, options.size, &error))?;
+        let page = DVec2::new(flat.width.into(), flat.height.into());
+        let output = &flat.meshes[0];
+        // Pages side by side.
+        let shift = |page: Option<u32>| DVec2::new(f64::from(page.unwrap_or(0)), 0.0);
+        let place = |v: &uvunwrap::OutputVertex| (DVec2::from(v.uv.map(f64::from)) + shift(v.page)) * page;
+        let key = |v: &uvunwrap::OutputVertex| [v.uv[0], v.uv[1], v.page.unwrap_or(0) as f32];
+        Ok(Self {
+            xrefs: output.vertices.iter().map(|v| v.xref).collect(),
+            points: output.vertices.iter().map(place).collect(),
+            welded: weld(&output.vertices.iter().map(key).collect::<Vec<_>>()),
+            triangles: output.indices.as_chunks().0.to_vec(),
+        })
+    }
+
+    /// Where each point goes once areas are even.
+    fn evened_out(
+        &self,
+        mesh: &Mesh,
+        progress: &(impl Fn(Progress) -> bool + Sync),
+    ) -> Result<Vec<[f32; 2]>, AtlasError> {
+        let mut charts = self.charts(mesh);
+        // The largest first, so that no thread is left alone with it.
+        charts.sort_by_key(|(_, chart)| std::cmp::Reverse(chart.triangles.len()));
+        let total = Some(charts.len());
+        let done = Mutex::new(0);
+        charts.par_iter_mut().try_for_each(|(_, chart)| {
+            chart.relax();
+            let mut done = done.lock().unwrap_or_else(PoisonError::into_inner);
+            *done += 1;
+            let go_on = progress(Progress { stage: "evening out", done: *done, total });
+            go_on.then_some(()).ok_or_else(|| AtlasError::Cancelled { mesh: mesh.name.clone() })
+        })?;
+        let mut moved = self.points.clone();
+        for (ids, chart) in &charts {
+            for (&id, &point) in ids.iter().zip(&chart.points) {
+                moved[id as usize] = point;
+            }
+        }
+        Ok(self.welded.iter().map(|&v| moved[v as usize].as_vec2().into()).collect())
+    }
+
+    /// The charts, each with the numbers of its points; triangles without an area in UV or in space belong to none.
+    fn charts(&self, mesh: &Mesh) -> Vec<(Vec<u32>, Chart)> {
+        let triangles: Vec<_> = self.triangles.iter().map(|t| t.map(|v| self.welded[v as usize])).collect();
+        let names = connected_charts(self.points.len(), &triangles).0;
+        let mut charts: Vec<(Vec<u32>, Chart)> = Vec::new();
+        let mut numbers = HashMap::new();
+        let mut places = vec![u32::MAX; self.points.len()];
+        for (t, triangle) in triangles.iter().enumerate() {
+            let surface = area(mesh, t);
+            if signed_area(&triangle.map(|v| self.points[v as usize])) <= 0.0 || surface <= 0.0 {
+                continue;
+            }
+            let number = *numbers.entry(names[t]).or_insert(charts.len());
+            if number == charts.len() {
+                charts.push(Default::default());
+            }
+            let (ids, chart) = &mut charts[number];
+            chart.triangles.push(triangle.map(|v| {
+                let place = &mut places[v as usize];
+                if *place == u32::MAX {
+                    *place = ids.len() as u32;
+                    ids.push(v);
+                    chart.points.push(self.points[v as usize]);
+                }
+                *place
+            }));
+            chart.areas.push(surface);
+        }
+        charts
+    }
+}
+
+fn told(p: uvunwrap::Progress, stage: &'static str) -> Progress {
+    Progress { stage, done: p.done, total: p.total }
+}
+
+/// Chores before and after charts are evened out.
+fn in_between() -> Progress {
+    Progress { stage: "evening out", done: 0, total: None }
 }
 
 fn stage_name(stage: Stage) -> &'static str {

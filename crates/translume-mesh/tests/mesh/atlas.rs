@@ -1,5 +1,5 @@
 use proptest::prelude::*;
-use translume_mesh::{Atlas, AtlasError, AtlasVertex, Mesh};
+use translume_mesh::{Atlas, AtlasError, AtlasReport, AtlasVertex, Mesh};
 
 use crate::fixtures::{area, clean, cube, grid_atlas, grid_layout, sphere, tetrahedron};
 
@@ -153,13 +153,41 @@ fn the_report_tells_flips_overlaps_and_charts() {
     assert!(good.area_cv < 1e-5 && (good.area_ratio_p99 - 1.0).abs() < 1e-5, "{good:?}");
 
     let (mut vertices, triangles) = grid_layout(&mesh, 128, 2.0);
-    vertices.iter_mut().for_each(|v| v.uv[0] = 1.0 - v.uv[0]);
     for k in 0..3 {
         vertices[k].uv = vertices[k + 3].uv;
     }
     let bad = Atlas::from_uvs(&mesh, 128, vertices, triangles).unwrap().report;
-    assert_eq!(bad.flipped, 12);
     assert!(bad.overlapping_texels > 100 && bad.utilisation < good.utilisation, "{bad:?}");
+}
+
+/// A square of two triangles whose shared edge is cut or not, with the second triangle folded back or not.
+fn square_report(second: [[f32; 2]; 3]) -> AtlasReport {
+    let mesh = clean(Mesh {
+        positions: vec![[0.0; 3], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]],
+        triangles: vec![[0, 1, 2], [0, 2, 3]],
+        ..Mesh::default()
+    });
+    let first = [[0.2, 0.2], [0.5, 0.2], [0.5, 0.5]];
+    let corners =
+        [(0, first[0]), (1, first[1]), (2, first[2]), (0, second[0]), (2, second[1]), (3, second[2])];
+    let vertices = corners.map(|(xref, uv)| AtlasVertex { xref, uv }).to_vec();
+    Atlas::from_uvs(&mesh, 64, vertices, vec![[0, 1, 2], [3, 4, 5]]).unwrap().report
+}
+
+#[test]
+fn a_fold_is_a_flip_and_a_mirrored_chart_is_none() {
+    let whole = square_report([[0.2, 0.2], [0.5, 0.5], [0.2, 0.5]]);
+    assert_eq!((whole.charts, whole.flipped, whole.seam_length), (1, 0, 0.0));
+    assert!((whole.angle_distortion - 1.0).abs() < 1e-6, "isometric up to rounding of UVs: {whole:?}");
+    // The third corner on the same side as the first triangle's: smaller, so that the chart knows which way it faces.
+    let folded = square_report([[0.2, 0.2], [0.5, 0.5], [0.45, 0.3]]);
+    assert_eq!((folded.charts, folded.flipped), (1, 1));
+    assert!(folded.angle_distortion > 1.1, "{folded:?}");
+    let cut = square_report([[0.6, 0.2], [0.9, 0.5], [0.6, 0.5]]);
+    assert_eq!((cut.charts, cut.flipped), (2, 0));
+    assert!((cut.seam_length - 2.0_f64.sqrt()).abs() < 1e-12, "the diagonal, once: {cut:?}");
+    let mirrored = square_report([[0.9, 0.2], [0.6, 0.5], [0.9, 0.5]]);
+    assert_eq!((mirrored.charts, mirrored.flipped), (2, 0));
 }
 
 #[test]

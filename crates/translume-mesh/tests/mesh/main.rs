@@ -18,6 +18,7 @@ mod normals;
 #[cfg(test)]
 mod order;
 #[cfg(test)]
+mod random;
 mod repair;
 #[cfg(test)]
 #[cfg(feature = "unwrap")]

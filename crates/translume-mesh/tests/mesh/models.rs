@@ -46,8 +46,8 @@ fn every_model_in_figures() {
             mesh.targets.len(),
             loaded.repairs
         );
-        for size in [128, 256, 512] {
-            let options = AtlasOptions { size, ..Default::default() };
+        for (size, equiareal) in [(128, true), (256, true), (512, true), (512, false)] {
+            let options = AtlasOptions { size, equiareal, ..Default::default() };
             match Atlas::build(mesh, &options, |_| true) {
                 Ok(atlas) => {
                     let start = std::time::Instant::now();

@@ -67,8 +67,11 @@ fn progress_is_told_and_can_cancel() {
     Atlas::build(&mesh, &AtlasOptions { size: 64, ..Default::default() }, listen).unwrap();
     let mut stages = stages.into_inner().unwrap();
     stages.dedup();
-    assert_eq!(stages, ["segmenting", "flattening", "packing", "splitting", "rasterising", "ordering"]);
-    for last in ["segmenting", "flattening", "packing", "rasterising", "ordering"] {
+    assert_eq!(
+        stages,
+        ["segmenting", "flattening", "evening out", "packing", "splitting", "rasterising", "ordering"]
+    );
+    for last in ["segmenting", "flattening", "evening out", "packing", "rasterising", "ordering"] {
         let after = AtomicUsize::new(0);
         let stop = |p: Progress| {
             after.fetch_add(usize::from(p.stage == last), Ordering::Relaxed);
@@ -83,7 +86,7 @@ fn progress_is_told_and_can_cancel() {
 #[test]
 fn what_cannot_be_unwrapped_is_told() {
     let refuse = |mesh: &Mesh, size, padding| {
-        Atlas::build(mesh, &AtlasOptions { size, padding }, |_| true).unwrap_err()
+        Atlas::build(mesh, &AtlasOptions { size, padding, ..Default::default() }, |_| true).unwrap_err()
     };
     let mesh = clean(cube());
     assert_eq!(refuse(&mesh, 8, 2), AtlasError::Size { size: 8 });
