@@ -10,6 +10,7 @@ Examples:
   translume render creature --medium wax --frames 48 -o morph.png      an animated PNG
   translume render --scene scene.json -o scene.exr                     linear radiance, full float
   translume inspect bunny.obj --json
+  translume inspect creature teapot bunny.obj --table                  one line each, evened out and not
 
 MODEL is an OBJ, glTF or GLB file, or a built-in: sphere, torus-knot, teapot, creature.
 RUST_LOG=info shows what wgpu has to say; WGPU_ADAPTER_NAME picks an adapter.";
@@ -52,9 +53,9 @@ pub struct Render {
     /// Width of the picture in pixels; the height follows the scene's camera, else the picture is square.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=16384))]
     pub size: Option<u32>,
-    /// Width of the atlas in texels.
-    #[arg(long, value_name = "N", default_value_t = 512)]
-    pub atlas: u32,
+    /// How the surface is laid out.
+    #[command(flatten)]
+    pub layout: Layout,
     /// Diffuse profile: dipole (the paper's formula to the letter) or dipole-normalised.
     #[arg(long, value_name = "NAME", default_value = "dipole-normalised")]
     pub profile: String,
@@ -105,12 +106,30 @@ fn degrees(text: &str) -> Result<[f32; 2], String> {
 /// `translume inspect`.
 #[derive(Debug, Args)]
 pub struct Inspect {
-    /// OBJ, glTF or GLB file, or the name of a built-in model.
-    pub model: String,
-    /// Print JSON.
-    #[arg(long)]
+    /// OBJ, glTF or GLB files, or the names of built-in models.
+    #[arg(required = true, value_name = "MODEL")]
+    pub models: Vec<String>,
+    /// Print JSON; a list where there are several models.
+    #[arg(long, conflicts_with = "table")]
     pub json: bool,
+    /// Print a table in Markdown: each model with charts evened out and as they were.
+    #[arg(long)]
+    pub table: bool,
+    /// How the surface is laid out.
+    #[command(flatten)]
+    pub layout: Layout,
+}
+
+/// How the surface is laid out in the atlas.
+#[derive(Debug, Args)]
+pub struct Layout {
     /// Width of the atlas in texels.
     #[arg(long, value_name = "N", default_value_t = 512)]
     pub atlas: u32,
+    /// Where charts come from: unwrap, own (the file's texture coordinates), or auto (own where they are fit for light).
+    #[arg(long, value_name = "SOURCE", default_value = "unwrap")]
+    pub charts: String,
+    /// Leave charts as the unwrapper flattened them, with texels of unequal area.
+    #[arg(long)]
+    pub uneven: bool,
 }

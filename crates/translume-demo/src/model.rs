@@ -1,9 +1,10 @@
 //! From a name on the command line to a clean mesh and its atlas.
 
+use crate::cli::Layout;
 use crate::error::Error;
 use crate::progress;
 use std::path::Path;
-use translume_mesh::{Atlas, AtlasOptions, Mesh, RepairReport, builtin, load};
+use translume_mesh::{Atlas, AtlasOptions, ChartSource, Mesh, RepairReport, builtin, load};
 
 /// A mesh and what had to be done to it.
 pub struct Model {
@@ -33,11 +34,24 @@ pub fn clean(mesh: Mesh) -> Result<Model, Error> {
     Ok(Model { mesh, repairs })
 }
 
-/// Unwraps behind a progress bar.
-pub fn unwrap(mesh: &Mesh, size: u32) -> Result<Atlas, Error> {
+/// What the command line says of the atlas.
+pub fn atlas_options(layout: &Layout) -> Result<AtlasOptions, Error> {
+    let charts = match layout.charts.as_str() {
+        "unwrap" => ChartSource::Unwrap,
+        "own" => ChartSource::Own,
+        "auto" => ChartSource::OwnOrUnwrap,
+        other => {
+            let problem = format!("no source of charts is called \"{other}\"; known are unwrap, own, auto");
+            return Err(Error::Option { option: "--charts", problem });
+        }
+    };
+    Ok(AtlasOptions { size: layout.atlas, charts, equiareal: !layout.uneven, ..Default::default() })
+}
+
+/// Builds an atlas behind a progress bar.
+pub fn unwrap(mesh: &Mesh, options: &AtlasOptions) -> Result<Atlas, Error> {
     let bar = progress::bar("unwrap");
-    let options = AtlasOptions { size, ..Default::default() };
-    let atlas = Atlas::build(mesh, &options, |step| progress::show(&bar, &step));
+    let atlas = Atlas::build(mesh, options, |step| progress::show(&bar, &step));
     bar.finish_and_clear();
     Ok(atlas?)
 }

@@ -43,14 +43,15 @@ pub fn run(arguments: &Render) -> Result<(), Error> {
     let profile = Profile::named(&arguments.profile)?;
     let method = method(arguments)?;
     let gpu = Gpu::new()?;
-    check_atlas(arguments.atlas, &gpu)?;
+    let options = model::atlas_options(&arguments.layout)?;
+    check_atlas(options.size, &gpu)?;
     let setup = match &arguments.scene {
         Some(path) => from_scene(path, arguments)?,
         None => from_model(arguments.model.as_deref().unwrap_or_default(), arguments)?,
     };
     let mesh = &setup.model.mesh;
     let start = Instant::now();
-    let atlas = model::unwrap(mesh, arguments.atlas)?;
+    let atlas = model::unwrap(mesh, &options)?;
     let unwrapped = start.elapsed().as_secs_f32();
 
     let descriptor = BodyDescriptor {

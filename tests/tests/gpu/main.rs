@@ -12,6 +12,7 @@ mod furnace;
 mod gather;
 mod golden;
 mod hard_cases;
+mod layout;
 mod scatter;
 mod shadow;
 mod stages;
