@@ -1,6 +1,6 @@
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use translume_mesh::{Atlas, AtlasError, AtlasOptions, Mesh, Progress};
+use translume_mesh::{Atlas, AtlasError, AtlasOptions, ChartSource, Mesh, Progress};
 
 use crate::atlas::area_error;
 use crate::fixtures::{clean, cube, sphere, tetrahedron};
@@ -106,4 +106,83 @@ fn what_cannot_be_unwrapped_is_told() {
     }
     let error = refuse(&clean(many), 16, 2);
     assert!(matches!(error, AtlasError::DoesNotFit { size: 16, charts, .. } if charts >= 100), "{error}");
+}
+
+/// A sphere with the texture coordinates of an unwrapping, as an artist might have stored them.
+fn textured_sphere() -> Mesh {
+    let mut mesh = clean(sphere(3));
+    let atlas = build(&mesh, 128);
+    mesh.uvs = atlas.triangles.iter().map(|t| t.map(|v| atlas.vertices[v as usize].uv)).collect();
+    mesh
+}
+
+fn build_own(mesh: &Mesh, size: u32) -> Result<Atlas, AtlasError> {
+    Atlas::build(mesh, &AtlasOptions { size, charts: ChartSource::Own, ..Default::default() }, |_| true)
+}
+
+#[test]
+fn own_texture_coordinates_are_kept_where_they_are_fit() {
+    let mesh = textured_sphere();
+    let atlas = build_own(&mesh, 128).unwrap();
+    let kept = atlas.triangles.iter().map(|t| t.map(|v| atlas.vertices[v as usize].uv));
+    assert_eq!(kept.collect::<Vec<_>>(), mesh.uvs);
+    assert!(area_error(&atlas, &mesh) < 1e-5);
+    let fresh = build(&mesh, 128).report;
+    assert_eq!((atlas.report.charts, atlas.report.flipped), (fresh.charts, 0));
+    assert!((atlas.report.seam_length / fresh.seam_length - 1.0).abs() < 1e-9);
+    // A texture read upside down mirrors every chart and folds none.
+    let mut mirrored = mesh;
+    mirrored.uvs.as_flattened_mut().iter_mut().for_each(|uv| uv[1] = 1.0 - uv[1]);
+    assert_eq!(build_own(&mirrored, 128).unwrap().report.flipped, 0);
+}
+
+#[test]
+fn own_texture_coordinates_that_are_unfit_are_refused_with_the_reason() {
+    let refuse = |change: &dyn Fn(&mut Mesh), size, reason: &str| {
+        let mut mesh = textured_sphere();
+        change(&mut mesh);
+        let error = build_own(&mesh, size).unwrap_err();
+        assert!(matches!(error, AtlasError::OwnUvs { .. }) && error.to_string().contains(reason), "{error}");
+        let options = AtlasOptions { size: 128, charts: ChartSource::OwnOrUnwrap, ..Default::default() };
+        let unwrapped = Atlas::build(&mesh, &options, |_| true).unwrap().report;
+        assert_eq!((unwrapped.flipped, unwrapped.overlapping_texels), (0, 0), "unwrapped instead");
+    };
+    refuse(&|mesh| mesh.uvs.clear(), 128, "it has none");
+    refuse(&|mesh| mesh.uvs[7][2][0] = 1.5, 128, "triangle 7 leave [0, 1]");
+    refuse(&|mesh| mesh.uvs[7][2][0] = f32::NAN, 128, "triangle 7 leave [0, 1]");
+    refuse(
+        &|mesh| mesh.uvs.iter_mut().for_each(|uvs| *uvs = [[0.1, 0.1], [0.9, 0.1], [0.1, 0.9]]),
+        128,
+        "lie on one another",
+    );
+    // One vertex of a triangle pulled across the edge opposite to it, with all who share it.
+    let fold = |mesh: &mut Mesh| {
+        let [a, b, c] = mesh.uvs[7];
+        let beyond = std::array::from_fn(|k| b[k] + c[k] - 0.9 * a[k] - 0.1 * b[k]);
+        mesh.uvs.as_flattened_mut().iter_mut().filter(|uv| **uv == a).for_each(|uv| *uv = beyond);
+    };
+    refuse(&fold, 128, "turned over within their chart");
+}
+
+#[test]
+fn charts_without_gutters_are_refused_at_sizes_where_they_meet() {
+    // Two quads of a strip, cut, with a gap of 1/32 between them: four texels at 128², one at 32².
+    let mut mesh = clean(Mesh {
+        positions: vec![
+            [0.0; 3],
+            [1.0, 0.0, 0.0],
+            [2.0, 0.0, 0.0],
+            [0.0, 1.0, 0.0],
+            [1.0, 1.0, 0.0],
+            [2.0, 1.0, 0.0],
+        ],
+        triangles: vec![[0, 1, 4], [0, 4, 3], [1, 2, 5], [1, 5, 4]],
+        ..Mesh::default()
+    });
+    let quad = |u: f32| [[u, 0.25], [u + 0.25, 0.25], [u + 0.25, 0.5], [u, 0.5]];
+    let [p, q] = [quad(0.125), quad(0.40625)];
+    mesh.uvs = vec![[p[0], p[1], p[2]], [p[0], p[2], p[3]], [q[0], q[1], q[2]], [q[0], q[2], q[3]]];
+    build_own(&mesh, 128).unwrap();
+    let error = build_own(&mesh, 32).unwrap_err().to_string();
+    assert!(error.contains("closer than two texels"), "{error}");
 }
