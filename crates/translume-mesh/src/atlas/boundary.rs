@@ -81,3 +81,46 @@ impl Span {
         !apart && !joined && splits(self, other) && splits(other, self)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A strip of two triangles a step along a path, half a unit to either side.
+    fn strip(path: &[DVec2]) -> (Vec<[u32; 3]>, Vec<DVec2>) {
+        let steps = path.len() as u32 - 1;
+        let triangles =
+            (0..steps).map(|k| 2 * k).flat_map(|a| [[a, a + 2, a + 1], [a + 1, a + 2, a + 3]]).collect();
+        let points = (0..path.len()).flat_map(|k| {
+            let along = (path[(k + 1).min(path.len() - 1)] - path[k.saturating_sub(1)]).normalize();
+            [path[k] - 0.5 * along.perp(), path[k] + 0.5 * along.perp()]
+        });
+        (triangles, points.collect())
+    }
+
+    fn meetings(path: &[[f64; 2]]) -> usize {
+        let (triangles, points) = strip(&path.iter().map(|&p| p.into()).collect::<Vec<_>>());
+        Boundary::of(&triangles, points.len()).meetings(&points).len()
+    }
+
+    #[test]
+    fn a_strip_meets_itself_only_where_it_comes_back() {
+        let turn = [[0.0, 0.0], [3.0, 0.0], [6.0, 0.0], [6.0, 3.0], [3.0, 3.0], [2.0, 2.5]];
+        assert_eq!(meetings(&turn), 0);
+        let mut crossing = turn.to_vec();
+        crossing.push([1.5, -2.0]);
+        assert!(meetings(&crossing) > 0);
+    }
+
+    #[test]
+    fn a_fan_that_wraps_around_its_vertex_is_noticed() {
+        let fan = |turns: f64| {
+            let rim = |k: u32| DVec2::from_angle(std::f64::consts::TAU * turns * f64::from(k) / 12.0);
+            let points: Vec<_> = std::iter::once(DVec2::ZERO).chain((0..=12).map(rim)).collect();
+            let triangles: Vec<_> = (1..=12).map(|k| [0, k, k + 1]).collect();
+            Boundary::of(&triangles, points.len()).meetings(&points)
+        };
+        assert!(fan(0.9).is_empty());
+        assert!(fan(1.2).contains(&0));
+    }
+}

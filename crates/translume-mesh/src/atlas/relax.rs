@@ -195,3 +195,69 @@ fn conjugate_gradients(
     }
     x
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A square of 2·n² triangles, every one of which wants the same area, laid out by `place` from [0, 1]².
+    fn square(n: u32, place: impl Fn(DVec2) -> DVec2) -> Chart {
+        let across = n + 1;
+        let points = (0..across * across)
+            .map(|k| place(DVec2::new((k % across).into(), (k / across).into()) / f64::from(n)))
+            .collect();
+        let triangles: Vec<_> = (0..n * n)
+            .flat_map(|k| {
+                let a = k / n * across + k % n;
+                [[a, a + 1, a + across + 1], [a, a + across + 1, a + across]]
+            })
+            .collect();
+        Chart { points, areas: vec![1.0; triangles.len()], triangles, held: Vec::new() }
+    }
+
+    fn crowded(p: DVec2) -> DVec2 {
+        DVec2::new(p.x + 0.1 * (6.0 * p.x).sin() * p.y, p.y * (1.0 + 0.3 * p.y))
+    }
+
+    #[test]
+    fn areas_become_even_and_no_triangle_turns_over() {
+        let mut chart = square(20, crowded);
+        let before = chart.error(&chart.points);
+        chart.relax();
+        let after = chart.error(&chart.points);
+        assert!(before > 0.2 && after < EVEN, "{before} → {after}");
+        assert!((0..chart.triangles.len()).all(|t| chart.area(&chart.points, t) > 0.0));
+    }
+
+    #[test]
+    fn held_points_stay_and_the_others_make_up_for_them() {
+        let mut chart = square(20, crowded);
+        let boundary = Boundary::of(&chart.triangles, chart.points.len()).points;
+        let (before, error) = (chart.points.clone(), chart.error(&chart.points));
+        chart.held = vec![false; before.len()];
+        boundary.iter().for_each(|&v| chart.held[v as usize] = true);
+        chart.even_out();
+        assert!(boundary.iter().all(|&v| chart.points[v as usize] == before[v as usize]));
+        // Triangles with two corners on the boundary have one to move, those in the corners of the square none.
+        assert!(chart.error(&chart.points) < 0.3 * error, "{error} → {}", chart.error(&chart.points));
+    }
+
+    /// A horseshoe whose ends want to grow into each other.
+    #[test]
+    fn a_boundary_does_not_grow_across_itself() {
+        let bent = |p: DVec2| DVec2::from_angle(6.2 * p.x) * (2.0 - p.y);
+        let mut chart = square(24, bent);
+        let last = |t: usize| t % 48 >= 42 || t % 48 < 6;
+        (0..chart.areas.len()).filter(|&t| last(t)).for_each(|t| chart.areas[t] = 3.0);
+        let meets = |chart: &Chart| {
+            !Boundary::of(&chart.triangles, chart.points.len()).meetings(&chart.points).is_empty()
+        };
+        let mut careless = square(24, bent);
+        careless.areas.clone_from(&chart.areas);
+        careless.even_out();
+        assert!(meets(&careless), "without the check it would");
+        let before = chart.error(&chart.points);
+        chart.relax();
+        assert!(!meets(&chart) && chart.error(&chart.points) < 0.5 * before);
+    }
+}
