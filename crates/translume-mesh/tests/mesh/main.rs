@@ -11,6 +11,8 @@ mod load_gltf;
 #[cfg(feature = "load")]
 mod load_obj;
 #[cfg(test)]
+mod material;
+#[cfg(test)]
 #[cfg(all(feature = "load", feature = "unwrap"))]
 mod models;
 #[cfg(test)]
