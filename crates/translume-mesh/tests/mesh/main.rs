@@ -6,6 +6,9 @@ mod atlas;
 mod fixtures;
 #[cfg(test)]
 #[cfg(feature = "load")]
+mod gltf;
+#[cfg(test)]
+#[cfg(feature = "load")]
 mod load_gltf;
 #[cfg(test)]
 #[cfg(feature = "load")]
@@ -21,6 +24,8 @@ mod normals;
 mod order;
 #[cfg(test)]
 mod repair;
+#[cfg(test)]
+mod rig;
 #[cfg(test)]
 #[cfg(feature = "unwrap")]
 mod unwrap;
