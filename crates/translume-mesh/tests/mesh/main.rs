@@ -22,5 +22,7 @@ mod order;
 #[cfg(test)]
 mod repair;
 #[cfg(test)]
+mod repair_options;
+#[cfg(test)]
 #[cfg(feature = "unwrap")]
 mod unwrap;
