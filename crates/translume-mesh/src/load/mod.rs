@@ -8,6 +8,7 @@ mod buffers;
 mod gltf;
 mod listener;
 mod obj;
+mod ply;
 mod polygon;
 
 use std::path::Path;
@@ -19,7 +20,7 @@ use crate::rig::Rig;
 use listener::Listener;
 
 /// Extensions that [`load`] reads, in lower case.
-pub const EXTENSIONS: [&str; 3] = ["obj", "gltf", "glb"];
+pub const EXTENSIONS: [&str; 4] = ["obj", "ply", "gltf", "glb"];
 
 /// A clean mesh from a file.
 #[derive(Clone, Debug, PartialEq)]
@@ -29,7 +30,7 @@ pub struct Loaded {
     pub mesh: Mesh,
     /// What had to be repaired.
     pub repairs: RepairReport,
-    /// What a unit of the file is, where the format says so: 1 for glTF (its specification, section 3.4), `None` for OBJ.
+    /// What a unit of the file is, where the format says so: 1 for glTF (its specification, section 3.4), `None` for OBJ and PLY.
     pub metres_per_unit: Option<f32>,
     /// What moves it, where the file has animations or skins.
     pub rig: Option<Rig>,
@@ -48,7 +49,7 @@ pub enum LoadError {
         reason: String,
     },
     /// The extension is none that the loader knows.
-    #[error("{file}: its extension is none of .obj, .gltf, .glb; convert it to one of them")]
+    #[error("{file}: its extension is none of .obj, .ply, .gltf, .glb; convert it to one of them")]
     UnknownExtension {
         /// The file.
         file: String,
@@ -61,7 +62,7 @@ pub enum LoadError {
         /// What was found, or missed.
         reason: String,
     },
-    /// A line of an OBJ file cannot be understood.
+    /// A line of an OBJ file, or of the header of a PLY file, cannot be understood.
     #[error("{file}: line {line}: {reason}; re-export the file or correct the line")]
     Line {
         /// The file.
@@ -96,6 +97,16 @@ pub enum LoadError {
         vertex: usize,
         /// Where it is said to be.
         position: [f32; 3],
+    },
+    /// A row of a PLY file is cut off, holds something that is no number, or contradicts the file.
+    #[error("{file}: {element}: {reason}; re-export the file")]
+    Ply {
+        /// The file.
+        file: String,
+        /// The row, such as `face 12 (from 0)`, or the element.
+        element: String,
+        /// What is wrong with it.
+        reason: String,
     },
     /// A face has more corners than can be cut into triangles in reasonable time, and is not convex.
     #[error(
@@ -135,7 +146,9 @@ pub enum LoadError {
 ///
 /// OBJ: objects and groups merge, vertices split where normals differ, missing normals are computed, and texture
 /// coordinates are kept where every face has them; materials are ignored. Faces of more than three corners become fans
-/// where such a fan lies inside them, as in convex ones, and else lose one ear after the other. glTF and GLB: the nodes
+/// where such a fan lies inside them, as in convex ones, and else lose one ear after the other. PLY, in text or binary:
+/// vertices with x, y, z and, if there, nx, ny, nz, and faces, which are cut as those of OBJ; other elements and properties are
+/// skipped. glTF and GLB: the nodes
 /// of the default scene, with their transforms, merge into one mesh; morph targets merge by index; skinned meshes keep
 /// their bind pose. Target names stay empty: glTF keeps them in application data.
 ///
@@ -156,6 +169,7 @@ pub fn load_with_progress(path: &Path, progress: impl Fn(Progress) -> bool) -> R
     let listener = Listener { file: &file, progress: &progress };
     let (mut mesh, metres_per_unit) = match extension.as_deref() {
         Some("obj") => (obj::read(listener.read(path)?, &listener)?, None),
+        Some("ply") => (ply::read(&listener.read(path)?, &listener)?, None),
         Some("gltf" | "glb") => (gltf::read(path, &listener.read(path)?)?, Some(1.0)),
         _ => return Err(LoadError::UnknownExtension { file }),
     };

@@ -33,7 +33,7 @@ fn the_extension_is_read_in_any_case() {
     assert_eq!(load(&folder.write("A.OBJ", TETRAHEDRON)).unwrap().mesh.triangles.len(), 4);
     for name in ["a.stl", "a"] {
         let error = load(&folder.write(name, TETRAHEDRON)).unwrap_err().to_string();
-        assert!(error.contains(name) && error.contains(".obj, .gltf, .glb"), "{error}");
+        assert!(error.contains(name) && error.contains(".obj, .ply, .gltf, .glb"), "{error}");
     }
 }
 
