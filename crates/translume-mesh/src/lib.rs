@@ -3,7 +3,7 @@
 //! | module | what it does |
 //! | --- | --- |
 //! | [`mesh`] | the [`Mesh`] everything speaks: positions, normals, triangles, morph targets |
-//! | [`load`] | OBJ, glTF and GLB files, with errors that name the element |
+//! | [`load`] | OBJ, PLY, glTF and GLB files, with errors that name the element |
 //! | [`repair`] | drops what cannot carry light, counts what it dropped |
 //! | [`normals`] | vertex normals at rest, and which triangles make them up on any pose |
 //! | [`atlas`] | charts and packing (by `uvunwrap`), the one-time raster into texels, gutters, texel order |
@@ -21,13 +21,15 @@ pub mod load;
 pub mod material;
 pub mod mesh;
 pub mod normals;
+mod progress;
 pub mod repair;
 pub mod rig;
 mod weld;
 
 pub use atlas::{Atlas, AtlasError, AtlasReport, AtlasVertex, Texel};
 #[cfg(feature = "unwrap")]
-pub use atlas::{AtlasOptions, ChartSource, Progress};
+pub use atlas::{AtlasOptions, ChartSource};
 pub use material::{Material, Scattering};
 pub use mesh::{Influence, Mesh, MorphTarget, Skin};
-pub use repair::{RepairError, RepairReport};
+pub use progress::Progress;
+pub use repair::{RepairError, RepairOptions, RepairReport};

@@ -19,7 +19,9 @@ mod texels;
 mod unwrap;
 
 #[cfg(feature = "unwrap")]
-pub use unwrap::{AtlasOptions, ChartSource, Progress};
+pub use crate::progress::Progress;
+#[cfg(feature = "unwrap")]
+pub use unwrap::{AtlasOptions, ChartSource};
 
 /// A mesh laid out in a square texture.
 #[derive(Clone, Debug, PartialEq)]

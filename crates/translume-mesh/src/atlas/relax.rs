@@ -125,7 +125,7 @@ impl Chart {
         let smoothness = SMOOTHNESS / (density * total);
         self.hold(&mut target);
         conjugate_gradients(&target, &self.diagonal(&rows, smoothness), |x, y| {
-            self.apply(&rows, smoothness, x, y)
+            self.apply(&rows, smoothness, x, y);
         })
     }
 

@@ -12,6 +12,7 @@ use super::raster::signed_area;
 use super::relax::Chart;
 use super::{Atlas, AtlasError, AtlasVertex, own};
 use crate::mesh::Mesh;
+use crate::progress::Progress;
 use crate::weld::weld;
 
 /// Width of the page on which charts lie while they are evened out, texels. Any will do.
@@ -48,17 +49,6 @@ impl Default for AtlasOptions {
     fn default() -> Self {
         Self { size: 256, padding: 2, charts: ChartSource::Unwrap, equiareal: true }
     }
-}
-
-/// How far a build has come.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Progress {
-    /// What is going on: `segmenting`, `flattening`, `evening out`, `packing`, `splitting`, `rasterising` or `ordering`.
-    pub stage: &'static str,
-    /// Units of work finished in this stage.
-    pub done: usize,
-    /// Units of work in this stage, where known.
-    pub total: Option<usize>,
 }
 
 impl Atlas {

@@ -8,11 +8,16 @@ mod fixtures;
 #[cfg(feature = "load")]
 mod gltf;
 #[cfg(test)]
+mod holes;
+#[cfg(test)]
 #[cfg(feature = "load")]
 mod load_gltf;
 #[cfg(test)]
 #[cfg(feature = "load")]
 mod load_obj;
+#[cfg(test)]
+#[cfg(feature = "load")]
+mod load_ply;
 #[cfg(test)]
 mod material;
 #[cfg(test)]
@@ -23,8 +28,12 @@ mod normals;
 #[cfg(test)]
 mod order;
 #[cfg(test)]
+#[cfg(feature = "unwrap")]
 mod random;
+#[cfg(test)]
 mod repair;
+#[cfg(test)]
+mod repair_options;
 #[cfg(test)]
 mod rig;
 #[cfg(test)]
