@@ -19,12 +19,14 @@ pub mod builtin;
 pub mod load;
 pub mod mesh;
 pub mod normals;
+mod progress;
 pub mod repair;
 pub mod rig;
 mod weld;
 
 pub use atlas::{Atlas, AtlasError, AtlasReport, AtlasVertex, Texel};
 #[cfg(feature = "unwrap")]
-pub use atlas::{AtlasOptions, Progress};
+pub use atlas::AtlasOptions;
 pub use mesh::{Influence, Mesh, MorphTarget, Skin};
+pub use progress::Progress;
 pub use repair::{RepairError, RepairReport};

@@ -13,7 +13,9 @@ mod texels;
 mod unwrap;
 
 #[cfg(feature = "unwrap")]
-pub use unwrap::{AtlasOptions, Progress};
+pub use crate::progress::Progress;
+#[cfg(feature = "unwrap")]
+pub use unwrap::AtlasOptions;
 
 /// A mesh laid out in a square texture.
 #[derive(Clone, Debug, PartialEq)]

@@ -2,9 +2,10 @@
 
 use uvunwrap::{Density, Error, MeshInput, Options, Stage};
 
-use super::layout::{Layout, Stopwatch, check_mesh, check_size, connected_charts};
+use super::layout::{Layout, check_mesh, check_size, connected_charts};
 use super::{Atlas, AtlasError, AtlasVertex};
 use crate::mesh::Mesh;
+use crate::progress::{Progress, Stopwatch};
 use crate::weld::weld;
 
 /// What an atlas shall be like.
@@ -21,17 +22,6 @@ impl Default for AtlasOptions {
     fn default() -> Self {
         Self { size: 256, padding: 2 }
     }
-}
-
-/// How far a build has come.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Progress {
-    /// What is going on: `segmenting`, `flattening`, `packing`, `splitting`, `rasterising` or `ordering`.
-    pub stage: &'static str,
-    /// Units of work finished in this stage.
-    pub done: usize,
-    /// Units of work in this stage, where known.
-    pub total: Option<usize>,
 }
 
 impl Atlas {
