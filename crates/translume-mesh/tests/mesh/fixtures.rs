@@ -1,6 +1,6 @@
 //! Meshes and layouts made by hand.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use translume_mesh::{Atlas, AtlasVertex, Mesh, repair::repair};
 
@@ -131,4 +131,48 @@ impl Folder {
     ) -> Result<translume_mesh::load::Loaded, translume_mesh::load::LoadError> {
         translume_mesh::load::load(&self.write(name, bytes))
     }
+}
+
+/// What is left when vertices at the same position are one.
+pub struct Topology {
+    /// V − E + F: 2 for one closed piece without handles.
+    pub euler: isize,
+    /// Directed edges that do not occur once, or whose opposite does not: 0 on a closed, oriented manifold.
+    pub bad_edges: usize,
+}
+
+impl Topology {
+    pub fn of(mesh: &Mesh) -> Self {
+        let point = |v: u32| mesh.positions[v as usize].map(|x| (x + 0.0).to_bits());
+        let mut vertices = HashSet::new();
+        let mut edges = HashMap::new();
+        for triangle in &mesh.triangles {
+            let [a, b, c] = triangle.map(point);
+            for (from, to) in [(a, b), (b, c), (c, a)] {
+                vertices.insert(from);
+                *edges.entry((from, to)).or_insert(0) += 1;
+            }
+        }
+        let pairs: HashSet<_> = edges.keys().map(|&(from, to)| (from.min(to), from.max(to))).collect();
+        let bad = |&(&(from, to), &count): &(&([u32; 3], [u32; 3]), &usize)| {
+            count != 1 || edges.get(&(to, from)) != Some(&1)
+        };
+        Self {
+            euler: vertices.len() as isize - pairs.len() as isize + mesh.triangles.len() as isize,
+            bad_edges: edges.iter().filter(bad).count(),
+        }
+    }
+}
+
+/// Volume inside a closed mesh, positive if its triangles face outwards.
+pub fn volume(mesh: &Mesh) -> f64 {
+    (0..mesh.triangles.len())
+        .map(|t| {
+            let [a, b, c] = mesh.corners(t).map(|p| p.map(f64::from));
+            (a[0] * (b[1] * c[2] - b[2] * c[1])
+                + a[1] * (b[2] * c[0] - b[0] * c[2])
+                + a[2] * (b[0] * c[1] - b[1] * c[0]))
+                / 6.0
+        })
+        .sum()
 }

@@ -5,6 +5,8 @@ mod atlas;
 #[cfg(test)]
 mod fixtures;
 #[cfg(test)]
+mod holes;
+#[cfg(test)]
 #[cfg(feature = "load")]
 mod load_gltf;
 #[cfg(test)]

@@ -1,0 +1,53 @@
+//! What was repaired.
+
+use std::fmt;
+
+/// What [`repair`](super::repair) changed, and what it saw and left alone.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct RepairReport {
+    /// Triangles without an area, dropped.
+    pub dropped_degenerate: usize,
+    /// Repeated triangles (same three positions, same side), dropped.
+    pub dropped_duplicate: usize,
+    /// Vertices that no remaining triangle uses, dropped.
+    pub dropped_vertices: usize,
+    /// Edges with one triangle, kept: the surface has holes.
+    pub boundary_edges: usize,
+    /// Edges with more than two triangles, kept.
+    pub non_manifold_edges: usize,
+    /// Edges whose two triangles face opposite sides, kept.
+    pub inconsistent_edges: usize,
+    /// Whether some or all normals were missing, zero or not finite, and were computed.
+    pub computed_normals: bool,
+}
+
+impl RepairReport {
+    /// Whether the mesh came through as it was (computed normals aside) and is closed and consistently oriented.
+    #[must_use]
+    pub fn is_pristine(&self) -> bool {
+        Self { computed_normals: false, ..self.clone() } == Self::default()
+    }
+}
+
+impl fmt::Display for RepairReport {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let counts = [
+            (self.dropped_degenerate, "triangles without area dropped"),
+            (self.dropped_duplicate, "repeated triangles dropped"),
+            (self.dropped_vertices, "unused vertices dropped"),
+            (self.boundary_edges, "boundary edges"),
+            (self.non_manifold_edges, "non-manifold edges"),
+            (self.inconsistent_edges, "edges between triangles of opposite sides"),
+        ];
+        let mut parts: Vec<_> =
+            counts.iter().filter(|(n, _)| *n > 0).map(|(n, what)| format!("{n} {what}")).collect();
+        if parts.is_empty() {
+            parts.push("closed, nothing to repair".into());
+        }
+        if self.computed_normals {
+            parts.push("normals computed".into());
+        }
+        f.write_str(&parts.join(", "))
+    }
+}
