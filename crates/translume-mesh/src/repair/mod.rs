@@ -1,7 +1,7 @@
 //! Makes a mesh clean, or says why it cannot be: drops what cannot carry light and counts what it dropped.
 
 mod cover;
-mod edges;
+pub(crate) mod edges;
 mod error;
 mod holes;
 mod patch;
@@ -49,7 +49,7 @@ pub fn repair(mut mesh: Mesh) -> Result<(Mesh, RepairReport), RepairError> {
     Ok((mesh, report))
 }
 
-fn check(mesh: &Mesh) -> Result<(), RepairError> {
+pub(crate) fn check(mesh: &Mesh) -> Result<(), RepairError> {
     let name = || mesh.name.clone();
     let count = mesh.positions.len();
     let mut used = vec![false; count];

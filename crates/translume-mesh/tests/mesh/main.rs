@@ -22,5 +22,7 @@ mod order;
 #[cfg(test)]
 mod repair;
 #[cfg(test)]
+mod spherical;
+#[cfg(test)]
 #[cfg(feature = "unwrap")]
 mod unwrap;
