@@ -7,6 +7,7 @@
 //! | [`repair`] | drops what cannot carry light, counts what it dropped |
 //! | [`normals`] | vertex normals at rest, and which triangles make them up on any pose |
 //! | [`atlas`] | charts and packing (by `uvunwrap`), the one-time raster into texels, gutters, texel order |
+//! | [`spherical`] | a closed surface without handles laid around a sphere or an egg, as a morph target |
 //! | [`rig`] | nodes, joints, animations: from a time to the weights and matrices of a pose |
 //! | [`material`] | what a file says a surface and the volume behind it are made of |
 //! | [`builtin`] | sphere, torus knot, Newell's teapot, and the creature that melts into an egg |
@@ -24,6 +25,7 @@ pub mod normals;
 mod progress;
 pub mod repair;
 pub mod rig;
+pub mod spherical;
 mod weld;
 
 pub use atlas::{Atlas, AtlasError, AtlasReport, AtlasVertex, Texel};

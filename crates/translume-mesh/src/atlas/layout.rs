@@ -6,6 +6,7 @@ use super::raster::Fragments;
 use super::texels::Charted;
 use super::{Atlas, AtlasError, AtlasVertex, figures, gutter, order};
 use crate::mesh::Mesh;
+use crate::progress::Stopwatch;
 use crate::weld::weld;
 
 /// How far gutters reach around charts that come from the caller, texels.
@@ -178,23 +179,4 @@ pub(super) fn connected_charts(vertices: usize, triangles: &[[u32; 3]]) -> (Vec<
     names.sort_unstable();
     names.dedup();
     (charts, names.len())
-}
-
-/// Wall time; always zero in a browser without threads, where the standard clock is missing.
-pub(super) struct Stopwatch(#[cfg(not(target_arch = "wasm32"))] std::time::Instant);
-
-impl Stopwatch {
-    pub fn start() -> Self {
-        Self(
-            #[cfg(not(target_arch = "wasm32"))]
-            std::time::Instant::now(),
-        )
-    }
-
-    pub fn seconds(&self) -> f64 {
-        #[cfg(not(target_arch = "wasm32"))]
-        return self.0.elapsed().as_secs_f64();
-        #[cfg(target_arch = "wasm32")]
-        0.0
-    }
 }

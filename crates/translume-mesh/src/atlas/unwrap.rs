@@ -7,12 +7,12 @@ use glam::DVec2;
 use rayon::prelude::*;
 use uvunwrap::{Density, Error, MeshInput, Options, Packing, Stage};
 
-use super::layout::{Layout, Stopwatch, area, check_mesh, check_size, connected_charts};
+use super::layout::{Layout, area, check_mesh, check_size, connected_charts};
 use super::raster::signed_area;
 use super::relax::Chart;
 use super::{Atlas, AtlasError, AtlasVertex, own};
 use crate::mesh::Mesh;
-use crate::progress::Progress;
+use crate::progress::{Progress, Stopwatch};
 use crate::weld::weld;
 
 /// Width of the page on which charts lie while they are evened out, texels. Any will do.

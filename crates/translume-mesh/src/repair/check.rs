@@ -4,7 +4,7 @@ use super::error::{DIAGONALS, RepairError};
 use crate::mesh::{Influence, Mesh};
 
 /// Errors where dropping would change what the artist meant.
-pub(super) fn check(mesh: &Mesh) -> Result<(), RepairError> {
+pub(crate) fn check(mesh: &Mesh) -> Result<(), RepairError> {
     let name = || mesh.name.clone();
     let count = mesh.positions.len();
     let mut used = vec![false; count];

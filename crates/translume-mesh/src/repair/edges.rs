@@ -3,7 +3,7 @@
 /// The half-edges of triangles after joining vertices at the same position. A half-edge is the edge that a triangle
 /// walks from one of its corners to the next; that of corner k of triangle t has the number 3 t + k.
 #[derive(Clone, Copy)]
-pub(super) struct HalfEdges<'a> {
+pub(crate) struct HalfEdges<'a> {
     pub triangles: &'a [[u32; 3]],
     /// The representative of each vertex.
     pub welded: &'a [u32],
@@ -33,13 +33,13 @@ impl HalfEdges<'_> {
 }
 
 /// The half-edge that follows in the same triangle.
-pub(super) fn next(half: u32) -> u32 {
+pub(crate) fn next(half: u32) -> u32 {
     if half % 3 == 2 { half - 2 } else { half + 1 }
 }
 
 /// What lies on the other side of a half-edge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Across {
+pub(crate) enum Across {
     /// Nothing: the surface ends here.
     Boundary,
     /// One triangle, whose half-edge runs the opposite way: both face the same side.
@@ -51,7 +51,7 @@ pub(super) enum Across {
 }
 
 /// Half-edges grouped by the edge that they walk.
-pub(super) struct Edges<'a> {
+pub(crate) struct Edges<'a> {
     pub half_edges: HalfEdges<'a>,
     /// What lies beyond each half-edge.
     pub across: Vec<Across>,

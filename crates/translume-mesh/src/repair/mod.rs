@@ -1,8 +1,8 @@
 //! Makes a mesh clean, or says why it cannot be: mends what has one right answer, drops what cannot carry light, and counts both.
 
-mod check;
+pub(crate) mod check;
 mod cover;
-mod edges;
+pub(crate) mod edges;
 mod error;
 mod holes;
 mod nesting;

@@ -37,5 +37,7 @@ mod repair_options;
 #[cfg(test)]
 mod rig;
 #[cfg(test)]
+mod spherical;
+#[cfg(test)]
 #[cfg(feature = "unwrap")]
 mod unwrap;

@@ -5,12 +5,10 @@
 //! | [`anatomy`] | the body, part by part |
 //! | [`field`] | the signed distance field that the parts make |
 //! | [`surface_nets`] | from the field to triangles |
-//! | [`coarsen`] | fewer triangles, and back |
 //! | [`relax`] | even triangles |
-//! | [`egg`] | the same triangles around an egg |
+//! | [`egg`] | the same triangles around an egg, by [`spherical`](crate::spherical) |
 
 mod anatomy;
-mod coarsen;
 mod egg;
 mod field;
 mod relax;
@@ -19,8 +17,8 @@ mod surface_nets;
 use glam::Vec3;
 
 use crate::normals::smooth_normals;
+use crate::spherical::coarsen::Rings;
 use crate::{Mesh, MorphTarget};
-use coarsen::Rings;
 
 /// A box around the creature with room to spare, mm.
 const BOX: [Vec3; 2] = [Vec3::new(-43.0, -4.0, -36.5), Vec3::new(43.0, 102.0, 41.0)];
