@@ -8,6 +8,7 @@
 //! | [`normals`] | vertex normals at rest, and which triangles make them up on any pose |
 //! | [`atlas`] | charts and packing (by `uvunwrap`), the one-time raster into texels, gutters, texel order |
 //! | [`rig`] | nodes, joints, animations: from a time to the weights and matrices of a pose |
+//! | [`warp`] | twist, bend and inflation, and the positions of any pose on the CPU |
 //! | [`builtin`] | sphere, torus knot, Newell's teapot, and the creature that melts into an egg |
 //!
 //! Nothing here knows a GPU. Lengths are the model's own units throughout; `translume` converts to millimetres.
@@ -21,6 +22,7 @@ pub mod mesh;
 pub mod normals;
 pub mod repair;
 pub mod rig;
+pub mod warp;
 mod weld;
 
 pub use atlas::{Atlas, AtlasError, AtlasReport, AtlasVertex, Texel};
@@ -28,3 +30,4 @@ pub use atlas::{Atlas, AtlasError, AtlasReport, AtlasVertex, Texel};
 pub use atlas::{AtlasOptions, Progress};
 pub use mesh::{Influence, Mesh, MorphTarget, Skin};
 pub use repair::{RepairError, RepairReport};
+pub use warp::Warp;
