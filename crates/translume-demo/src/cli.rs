@@ -8,6 +8,8 @@ Examples:
   translume render creature --medium jade -o creature.png
   translume render bunny.obj --medium skimmilk --size 1024 -o bunny.png
   translume render creature --medium wax --frames 48 -o morph.png      an animated PNG
+  translume render fox.glb --animation Walk --frames 24 -o walk.png    another
+  translume render spot.obj --twist 90 --bend 40 -o candy.png
   translume render --scene scene.json -o scene.exr                     linear radiance, full float
   translume inspect bunny.obj --json
 
@@ -85,7 +87,23 @@ pub struct Render {
     /// Weight of each morph target, separated by commas.
     #[arg(long, value_name = "W,…", value_delimiter = ',', allow_negative_numbers = true)]
     pub morph: Vec<f32>,
-    /// Frames of an animated PNG: through the first morph target and back, or once around where there is none.
+    /// Degrees by which the top turns against the bottom.
+    #[arg(long, value_name = "DEGREES", allow_negative_numbers = true)]
+    pub twist: Option<f32>,
+    /// Degrees of the arc that the upright axis becomes; positive leans to the right.
+    #[arg(long, value_name = "DEGREES", allow_negative_numbers = true)]
+    pub bend: Option<f32>,
+    /// Units of the model by which the surface moves outwards.
+    #[arg(long, value_name = "X", allow_negative_numbers = true)]
+    pub inflate: Option<f32>,
+    /// An animation of the model, by name or by number from 0; a wrong name lists them all.
+    #[arg(long, value_name = "NAME")]
+    pub animation: Option<String>,
+    /// Seconds into the animation, the first one if none is named.
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
+    pub time: Option<f32>,
+    /// Frames of an animated PNG: all of the animation, if one is named; else through the first morph target and back, or once around
+    /// where there is none.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=2000))]
     pub frames: u32,
     /// Picture to write, .png or .exr.

@@ -9,7 +9,8 @@ pub fn run(arguments: &Inspect) -> Result<(), Error> {
     let model = model::open(&arguments.model)?;
     let atlas = model::unwrap(&model.mesh, arguments.atlas)?;
     let (mesh, report, repairs) = (&model.mesh, &atlas.report, &model.repairs);
-    let (low, high) = mesh.bounds().unwrap_or_default();
+    let (low, high) = model.bounds();
+    let animations: Vec<_> = model.rig.animations.iter().map(|animation| animation.name.as_str()).collect();
     if arguments.json {
         let targets: Vec<_> = mesh.targets.iter().map(|target| target.name.as_str()).collect();
         let value = json!({
@@ -17,8 +18,10 @@ pub fn run(arguments: &Inspect) -> Result<(), Error> {
             "vertices": mesh.positions.len(),
             "triangles": mesh.triangles.len(),
             "morph_targets": targets,
+            "joints": model.rig.joints.len(),
+            "animations": animations,
             "bounds": { "min": low, "max": high },
-            "diagonal": mesh.diagonal(),
+            "diagonal": model.diagonal(),
             "repairs": {
                 "dropped_degenerate": repairs.dropped_degenerate,
                 "dropped_duplicate": repairs.dropped_duplicate,
@@ -45,7 +48,9 @@ pub fn run(arguments: &Inspect) -> Result<(), Error> {
         ("vertices", mesh.positions.len().to_string()),
         ("triangles", mesh.triangles.len().to_string()),
         ("morph targets", mesh.targets.len().to_string()),
-        ("bounds", format!("{low:?} to {high:?}, diagonal {:.4}", mesh.diagonal())),
+        ("joints", model.rig.joints.len().to_string()),
+        ("animations", if animations.is_empty() { "none".to_owned() } else { animations.join(", ") }),
+        ("bounds", format!("{low:?} to {high:?}, diagonal {:.4}", model.diagonal())),
         ("repairs", repairs.to_string()),
         (
             "atlas",
