@@ -9,7 +9,8 @@ pub fn run(arguments: &Inspect) -> Result<(), Error> {
     let model = model::open(&arguments.model)?;
     let atlas = model::unwrap(&model.mesh, arguments.atlas)?;
     let (mesh, report, repairs) = (&model.mesh, &atlas.report, &model.repairs);
-    let (low, high) = model.bounds();
+    let (low, high) = model.bounds()?;
+    let diagonal = model.diagonal()?;
     let animations: Vec<_> = model.rig.animations.iter().map(|animation| animation.name.as_str()).collect();
     if arguments.json {
         let targets: Vec<_> = mesh.targets.iter().map(|target| target.name.as_str()).collect();
@@ -21,7 +22,7 @@ pub fn run(arguments: &Inspect) -> Result<(), Error> {
             "joints": model.rig.joints.len(),
             "animations": animations,
             "bounds": { "min": low, "max": high },
-            "diagonal": model.diagonal(),
+            "diagonal": diagonal,
             "repairs": {
                 "dropped_degenerate": repairs.dropped_degenerate,
                 "dropped_duplicate": repairs.dropped_duplicate,
@@ -50,7 +51,7 @@ pub fn run(arguments: &Inspect) -> Result<(), Error> {
         ("morph targets", mesh.targets.len().to_string()),
         ("joints", model.rig.joints.len().to_string()),
         ("animations", if animations.is_empty() { "none".to_owned() } else { animations.join(", ") }),
-        ("bounds", format!("{low:?} to {high:?}, diagonal {:.4}", model.diagonal())),
+        ("bounds", format!("{low:?} to {high:?}, diagonal {diagonal:.4}")),
         ("repairs", repairs.to_string()),
         (
             "atlas",

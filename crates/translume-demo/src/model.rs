@@ -5,8 +5,8 @@ use crate::progress;
 use glam::{Mat4, Vec3};
 use std::f32::consts::FRAC_PI_2;
 use std::path::Path;
-use translume_mesh::rig::{Animation, Pose, Rig};
-use translume_mesh::{Atlas, AtlasOptions, Mesh, RepairReport, Warp, builtin, load};
+use translume_mesh::rig::{self, Animation, Pose, Rig};
+use translume_mesh::{Atlas, AtlasOptions, Mesh, RepairReport, builtin, load};
 
 /// A mesh, what had to be done to it, and what moves it.
 pub struct Model {
@@ -36,18 +36,18 @@ impl Model {
     }
 
     /// Corners of a box around the model as its file shows it.
-    pub fn bounds(&self) -> ([f32; 3], [f32; 3]) {
-        let posed = self.mesh.posed(&self.pose(&self.rig, None, 0.0), &Warp::default());
+    pub fn bounds(&self) -> Result<([f32; 3], [f32; 3]), Error> {
+        let posed = rig::posed(&self.mesh, &self.pose(&self.rig, None, 0.0))?;
         let points = posed.into_iter().map(Vec3::from);
         let around = |(low, high): (Vec3, Vec3), p| (low.min(p), high.max(p));
         let (low, high) = points.fold((Vec3::INFINITY, Vec3::NEG_INFINITY), around);
-        (low.to_array(), high.to_array())
+        Ok((low.to_array(), high.to_array()))
     }
 
     /// From corner to corner of that box.
-    pub fn diagonal(&self) -> f32 {
-        let (low, high) = self.bounds();
-        Vec3::from(low).distance(high.into())
+    pub fn diagonal(&self) -> Result<f32, Error> {
+        let (low, high) = self.bounds()?;
+        Ok(Vec3::from(low).distance(high.into()))
     }
 
     /// Turns a model whose z axis points up, as CAD programs and scanners write them.

@@ -53,7 +53,7 @@ impl<'a> Motion<'a> {
         if !wish.morph.is_empty() {
             rig.weights = morph_weights(&wish.morph, model)?;
         }
-        let (low, high) = model.bounds();
+        let (low, high) = model.bounds()?;
         let warp = Warp { axis: Some(Axis::within(low, high)), ..warp(wish)? };
         let middle = 0.5 * (Vec3::from(low) + Vec3::from(high));
         Ok(Self { model, rig, clip: clip(model, wish)?, frames, warp, middle })
@@ -85,15 +85,16 @@ impl<'a> Motion<'a> {
     }
 
     /// Where the surface is at some time or other.
-    pub fn points(&self) -> Vec<Vec3> {
+    pub fn points(&self) -> Result<Vec<Vec3>, Error> {
         let moments = self.frames.min(FRAMED_MOMENTS);
-        let frame = |k| (u64::from(k) * u64::from(self.frames) / u64::from(moments)) as u32;
-        let moments = (0..moments).map(|k| self.moment(frame(k)));
-        let posed = moments.flat_map(|Moment { model, pose }| {
-            let points = self.model.mesh.posed(&pose, &self.warp);
-            points.into_iter().map(move |p| model.transform_point3(p.into()))
-        });
-        posed.collect()
+        let mut points = Vec::new();
+        for k in 0..moments {
+            let frame = u64::from(k) * u64::from(self.frames) / u64::from(moments);
+            let Moment { model, pose } = self.moment(frame as u32);
+            let posed = self.warp.posed(&self.model.mesh, &pose)?;
+            points.extend(posed.into_iter().map(|p| model.transform_point3(p.into())));
+        }
+        Ok(points)
     }
 
     /// How long a frame lasts, seconds, where an animation says so.

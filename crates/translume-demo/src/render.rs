@@ -50,7 +50,7 @@ pub fn run(arguments: &Render) -> Result<(), Error> {
     let motion =
         Motion::new(&setup.model, &setup.wish, arguments.frames).map_err(|error| blame(error, arguments))?;
     output.frame_seconds = motion.frame_seconds().unwrap_or(output.frame_seconds);
-    let subject = Subject::new(motion.points());
+    let subject = Subject::new(motion.points()?);
     let camera = sized(setup.camera, &subject, arguments);
     let lights = match &setup.lights {
         Some(lights) => lights.iter().map(|light| light.light(-1e-4 * mesh.diagonal())).collect(),
@@ -155,10 +155,14 @@ fn from_model(name: &str, arguments: &Render) -> Result<Setup, Error> {
     if arguments.up == "z" {
         model.turn_z_up();
     }
+    let mm_per_unit = match arguments.mm_per_unit {
+        Some(mm_per_unit) => mm_per_unit,
+        None => ASSUMED_DIAGONAL_MM / model.diagonal()?,
+    };
     Ok(Setup {
         flat_normals: false,
         medium,
-        mm_per_unit: arguments.mm_per_unit.unwrap_or(ASSUMED_DIAGONAL_MM / model.diagonal()),
+        mm_per_unit,
         lights: None,
         camera: None,
         wish: overridden(Wish::default(), arguments),

@@ -8,7 +8,8 @@
 //! | [`normals`] | vertex normals at rest, and which triangles make them up on any pose |
 //! | [`atlas`] | charts and packing (by `uvunwrap`), the one-time raster into texels, gutters, texel order |
 //! | [`rig`] | nodes, joints, animations: from a time to the weights and matrices of a pose |
-//! | [`warp`] | twist, bend and inflation, and the positions of any pose on the CPU |
+//! | [`warp`] | twist, bend and inflation |
+//! | [`material`] | what a file says a surface and the volume behind it are made of |
 //! | [`builtin`] | sphere, torus knot, Newell's teapot, and the creature that melts into an egg |
 //!
 //! Nothing here knows a GPU. Lengths are the model's own units throughout; `translume` converts to millimetres.
@@ -18,6 +19,7 @@ pub mod atlas;
 pub mod builtin;
 #[cfg(feature = "load")]
 pub mod load;
+pub mod material;
 pub mod mesh;
 pub mod normals;
 pub mod repair;
@@ -28,6 +30,7 @@ mod weld;
 pub use atlas::{Atlas, AtlasError, AtlasReport, AtlasVertex, Texel};
 #[cfg(feature = "unwrap")]
 pub use atlas::{AtlasOptions, Progress};
+pub use material::{Material, Scattering};
 pub use mesh::{Influence, Mesh, MorphTarget, Skin};
 pub use repair::{RepairError, RepairReport};
 pub use warp::Warp;

@@ -2,11 +2,11 @@
 //!
 //! Source: Barr 1984, "Global and Local Deformations of Solid Primitives", Computer Graphics 18(3), for twist and bend.
 
-use glam::{DMat4, DVec3};
+use glam::{DVec3, Vec3};
 
 use crate::mesh::Mesh;
 use crate::normals::smooth_normals;
-use crate::rig::Pose;
+use crate::rig::{self, Pose, PoseError};
 
 /// Inflation, twist and bend. The default does nothing.
 ///
@@ -43,6 +43,26 @@ impl Warp {
     #[must_use]
     pub fn is_identity(&self) -> bool {
         self.twist == 0.0 && self.bend == 0.0 && self.inflate == 0.0
+    }
+
+    /// Where a pose and this warp put every vertex, model units, on the CPU: for a camera that has to see them all, or for export.
+    ///
+    /// # Errors
+    /// As [`rig::posed`].
+    pub fn posed(&self, mesh: &Mesh, pose: &Pose) -> Result<Vec<[f32; 3]>, PoseError> {
+        let axis = self.axis.unwrap_or_else(|| Axis::of(mesh));
+        let posed =
+            if self.inflate == 0.0 { rig::posed(mesh, pose) } else { rig::posed(&self.inflated(mesh), pose) };
+        Ok(posed?.into_iter().map(|p| axis.bend(self.bend, axis.twist(self.twist, p))).collect())
+    }
+
+    fn inflated(&self, mesh: &Mesh) -> Mesh {
+        let mut mesh = mesh.clone();
+        let directions = smooth_normals(&mesh.positions, &mesh.triangles);
+        for (position, direction) in mesh.positions.iter_mut().zip(directions) {
+            *position = (Vec3::from(*position) + self.inflate * Vec3::from(direction)).to_array();
+        }
+        mesh
     }
 }
 
@@ -102,47 +122,6 @@ fn sine_and_versine(angle: f64) -> (f64, f64) {
 /// Displacements, not positions: no angle is then exactly no movement.
 fn moved(point: [f32; 3], by: DVec3) -> [f32; 3] {
     (DVec3::from(point.map(f64::from)) + by).as_vec3().to_array()
-}
-
-impl Mesh {
-    /// Vertex positions of a pose, model units, on the CPU: for a camera that has to see them all, or for export. Weights and joints that
-    /// are missing count as 0 and as the identity.
-    ///
-    /// The mesh must be clean, and its influences in range.
-    #[must_use]
-    pub fn posed(&self, pose: &Pose, warp: &Warp) -> Vec<[f32; 3]> {
-        let joints: Vec<_> = pose.joints.iter().map(|joint| double(*joint)).collect();
-        let axis = warp.axis.unwrap_or_else(|| Axis::of(self));
-        let mut positions: Vec<_> = self.positions.iter().map(|p| DVec3::from(p.map(f64::from))).collect();
-        if warp.inflate != 0.0 {
-            let directions = smooth_normals(&self.positions, &self.triangles);
-            for (position, direction) in positions.iter_mut().zip(directions) {
-                *position += f64::from(warp.inflate) * DVec3::from(direction.map(f64::from));
-            }
-        }
-        for (target, &weight) in self.targets.iter().zip(&pose.weights) {
-            for (position, delta) in positions.iter_mut().zip(&target.position_deltas) {
-                *position += f64::from(weight) * DVec3::from(delta.map(f64::from));
-            }
-        }
-        if let Some(skin) = &self.skin {
-            let influences = skin.influences.chunks(skin.per_vertex.max(1));
-            for (position, influences) in positions.iter_mut().zip(influences) {
-                let rest = *position;
-                let shares = influences.iter().map(|influence| {
-                    let joint = joints.get(influence.joint as usize).unwrap_or(&DMat4::IDENTITY);
-                    f64::from(influence.weight) * joint.transform_point3(rest)
-                });
-                *position = shares.sum();
-            }
-        }
-        let warped = |p: DVec3| axis.bend(warp.bend, axis.twist(warp.twist, p.as_vec3().to_array()));
-        positions.into_iter().map(warped).collect()
-    }
-}
-
-fn double(matrix: [[f32; 4]; 4]) -> DMat4 {
-    DMat4::from_cols_array_2d(&matrix.map(|column| column.map(f64::from)))
 }
 
 #[cfg(test)]
@@ -231,11 +210,13 @@ mod tests {
             ..Mesh::default()
         };
         let pose = Pose { weights: vec![0.5], joints: vec![raised(0.0), raised(1.0)] };
-        assert_eq!(mesh.posed(&Pose::default(), &Warp::default()), mesh.positions);
-        let posed = mesh.posed(&pose, &Warp { inflate: 0.25, ..Warp::default() });
+        let at_rest = Pose { weights: vec![0.0], joints: vec![raised(0.0); 2] };
+        assert_eq!(Warp::default().posed(&mesh, &at_rest).unwrap(), mesh.positions);
+        assert!(Warp::default().posed(&mesh, &Pose::default()).is_err());
+        let posed = Warp { inflate: 0.25, ..Warp::default() }.posed(&mesh, &pose).unwrap();
         assert_eq!(posed, [[0.0, 0.0, 1.25], [1.0, 1.0, 1.25], [0.0, 1.5, 1.25]]);
         // The axis stands at (0.5, 0, 0): half a turn at its top takes x to 1 − x and z to −z.
-        let turned = mesh.posed(&pose, &Warp { twist: PI, ..Warp::default() });
+        let turned = Warp { twist: PI, ..Warp::default() }.posed(&mesh, &pose).unwrap();
         assert!(
             apart(turned[1], [0.0, 1.0, -1.0]) < 1e-6 && apart(turned[0], [0.0, 0.0, 1.0]) < 1e-6,
             "{turned:?}"

@@ -258,7 +258,7 @@ mod tests {
 
     fn true_bounds(mesh: &Mesh, pose: &Pose) -> Bounds {
         let rig_pose = rig::Pose { weights: pose.weights.clone(), joints: pose.joints.clone() };
-        Bounds::around(mesh.posed(&rig_pose, &pose.warp).into_iter().map(Vec3::from))
+        Bounds::around(pose.warp.posed(mesh, &rig_pose).unwrap().into_iter().map(Vec3::from))
     }
 
     /// How far random poses stick out of their boxes at worst, and how much longer those boxes' diagonals are on average; over

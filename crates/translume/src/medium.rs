@@ -1,5 +1,7 @@
 //! What a body is made of.
 
+use translume_mesh::Scattering;
+
 use crate::Error;
 
 /// A homogeneous scattering medium.
@@ -102,9 +104,33 @@ impl Medium {
     }
 }
 
+impl TryFrom<Scattering> for Medium {
+    type Error = Error;
+
+    /// The medium that a file's material describes; both are in 1/mm.
+    ///
+    /// # Errors
+    /// As [`Medium::validate`].
+    fn try_from(scattering: Scattering) -> Result<Self, Error> {
+        let Scattering { sigma_s_prime, sigma_a, ior } = scattering;
+        let medium = Self { sigma_s_prime, sigma_a, ior };
+        medium.validate()?;
+        Ok(medium)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_scattering_of_a_material_is_a_medium() {
+        let wax = Medium::WAX;
+        let scattering = Scattering { sigma_s_prime: wax.sigma_s_prime, sigma_a: wax.sigma_a, ior: wax.ior };
+        assert_eq!(Medium::try_from(scattering), Ok(wax));
+        let endless = Scattering { sigma_a: [0.0, f32::INFINITY, 0.0], ..scattering };
+        assert!(Medium::try_from(endless).unwrap_err().to_string().contains("sigma_a (green)"));
+    }
 
     #[test]
     fn presets_are_valid_and_found_by_any_spelling() {

@@ -5,6 +5,8 @@
 use gltf::Accessor;
 use gltf::accessor::{DataType, Dimensions, sparse};
 
+use super::buffers::Buffer;
+
 /// Elements of one size at a stride within some bytes.
 struct Elements<'a> {
     bytes: &'a [u8],
@@ -15,13 +17,13 @@ struct Elements<'a> {
 
 impl<'a> Elements<'a> {
     fn new(
-        buffers: &'a [Vec<u8>],
+        buffers: &'a [Buffer],
         view: &gltf::buffer::View<'_>,
         offset: usize,
         size: usize,
         count: usize,
     ) -> Result<Self, String> {
-        let buffer = buffers.get(view.buffer().index()).map_or(&[][..], Vec::as_slice);
+        let buffer = buffers.get(view.buffer().index()).map_or(&[][..], Buffer::bytes);
         let end = view.offset().checked_add(view.length());
         let bytes = end.and_then(|end| buffer.get(view.offset()..end)).ok_or_else(|| {
             format!(
@@ -52,59 +54,119 @@ impl<'a> Elements<'a> {
     }
 }
 
-/// Reads `expected` three-component vectors; integers where `KHR_mesh_quantization` allows them.
-pub(super) fn vectors(
+/// Reads `of.0` elements of `N` numbers, one for each of what `of.1` names; integers where the format or
+/// `KHR_mesh_quantization` allows them.
+pub(super) fn numbers<const N: usize>(
     accessor: &Accessor<'_>,
-    buffers: &[Vec<u8>],
-    expected: usize,
-) -> Result<Vec<[f32; 3]>, String> {
-    if accessor.dimensions() != Dimensions::Vec3 || accessor.data_type() == DataType::U32 {
+    buffers: &[Buffer],
+    of: (usize, &str),
+) -> Result<Vec<[f32; N]>, String> {
+    let (dimensions, kind) = match N {
+        1 => (Dimensions::Scalar, "plain numbers"),
+        2 => (Dimensions::Vec2, "vectors of two numbers"),
+        3 => (Dimensions::Vec3, "vectors of three numbers"),
+        _ => (Dimensions::Vec4, "vectors of four numbers"),
+    };
+    let (data_type, normalized) = (accessor.data_type(), accessor.normalized());
+    if accessor.dimensions() != dimensions || data_type == DataType::U32 {
+        return Err(format!("it holds {:?} of {data_type:?}, not {kind}", accessor.dimensions()));
+    }
+    check_count(accessor, of)?;
+    elements(accessor, buffers, of.0, |bytes| number(bytes, data_type, normalized))
+}
+
+/// Reads the inverse bind matrices of `joints` joints; there may be more.
+pub(super) fn inverse_binds(
+    accessor: &Accessor<'_>,
+    buffers: &[Buffer],
+    joints: usize,
+) -> Result<Vec<[f32; 16]>, String> {
+    if accessor.dimensions() != Dimensions::Mat4 || accessor.data_type() != DataType::F32 {
         return Err(format!(
-            "it holds {:?} of {:?}, not vectors of three numbers",
+            "it holds {:?} of {:?}, not matrices of four by four numbers",
             accessor.dimensions(),
             accessor.data_type()
         ));
     }
-    if accessor.count() != expected {
-        return Err(format!("it has {} elements, but there are {expected} vertices", accessor.count()));
+    if accessor.count() < joints {
+        check_count(accessor, (joints, "joints"))?;
     }
+    elements(accessor, buffers, joints, |bytes| number(bytes, DataType::F32, false))
+}
+
+/// Reads the joints that each vertex names.
+pub(super) fn joints(
+    accessor: &Accessor<'_>,
+    buffers: &[Buffer],
+    vertices: usize,
+) -> Result<Vec<[u32; 4]>, String> {
+    let data_type = accessor.data_type();
+    let small = matches!(data_type, DataType::U8 | DataType::U16);
+    if accessor.dimensions() != Dimensions::Vec4 || !small || accessor.normalized() {
+        return Err(format!(
+            "it holds {:?} of {data_type:?}, not vectors of four joints in 8 or 16 bits",
+            accessor.dimensions()
+        ));
+    }
+    check_count(accessor, (vertices, "vertices"))?;
+    elements(accessor, buffers, vertices, unsigned)
+}
+
+fn check_count(accessor: &Accessor<'_>, (expected, of): (usize, &str)) -> Result<(), String> {
+    let count = accessor.count();
+    if count == expected {
+        Ok(())
+    } else {
+        Err(format!("it has {count} elements, but there are {expected} {of}"))
+    }
+}
+
+/// Reads the first `count` elements of `N` components, zero where the accessor has no data; then what its sparse part
+/// replaces.
+fn elements<T: Copy + Default, const N: usize>(
+    accessor: &Accessor<'_>,
+    buffers: &[Buffer],
+    count: usize,
+    component: impl Fn(&[u8]) -> T,
+) -> Result<Vec<[T; N]>, String> {
+    let size = accessor.data_type().size();
     let decode = |bytes: &[u8]| {
-        let size = accessor.data_type().size();
         let mut components = bytes.chunks_exact(size);
-        std::array::from_fn(|_| {
-            components.next().map_or(0.0, |bytes| number(bytes, accessor.data_type(), accessor.normalized()))
-        })
+        std::array::from_fn(|_| components.next().map_or(T::default(), &component))
     };
-    let mut vectors: Vec<[f32; 3]> = match accessor.view() {
+    let mut read: Vec<[T; N]> = match accessor.view() {
         Some(view) => {
-            let elements = Elements::new(buffers, &view, accessor.offset(), accessor.size(), expected)?;
+            let elements = Elements::new(buffers, &view, accessor.offset(), accessor.size(), count)?;
             elements.iter().map(decode).collect()
         }
-        None => vec![[0.0; 3]; expected],
+        None => vec![[T::default(); N]; count],
     };
     if let Some(sparse) = accessor.sparse() {
+        if sparse.count() > count {
+            return Err(format!("its sparse data replaces {} elements of {count}", sparse.count()));
+        }
         let values = sparse.values();
         let values =
             Elements::new(buffers, &values.view(), values.offset(), accessor.size(), sparse.count())?;
         for (at, bytes) in sparse_indices(&sparse, buffers)?.into_iter().zip(values.iter()) {
-            *vectors.get_mut(at as usize).ok_or_else(|| {
-                format!("its sparse data replaces element {at}, but there are {expected}")
-            })? = decode(bytes);
+            *read
+                .get_mut(at as usize)
+                .ok_or_else(|| format!("its sparse data replaces element {at}, but there are {count}"))? =
+                decode(bytes);
         }
     }
-    Ok(vectors)
+    Ok(read)
 }
 
-/// Number of positions that an accessor can hold: without a buffer view the count would be bounded by nothing.
-pub(super) fn position_count(accessor: &Accessor<'_>) -> Result<usize, String> {
-    if accessor.view().is_none() {
-        return Err("positions have no buffer view".into());
-    }
+/// Number of elements, all of them within the bytes: without a buffer view it would be bounded by nothing.
+pub(super) fn count(accessor: &Accessor<'_>, buffers: &[Buffer], what: &str) -> Result<usize, String> {
+    let view = accessor.view().ok_or_else(|| format!("{what} have no buffer view"))?;
+    Elements::new(buffers, &view, accessor.offset(), accessor.size(), accessor.count())?;
     Ok(accessor.count())
 }
 
 /// Reads vertex indices.
-pub(super) fn indices(accessor: &Accessor<'_>, buffers: &[Vec<u8>]) -> Result<Vec<u32>, String> {
+pub(super) fn indices(accessor: &Accessor<'_>, buffers: &[Buffer]) -> Result<Vec<u32>, String> {
     let integer = matches!(accessor.data_type(), DataType::U8 | DataType::U16 | DataType::U32);
     if accessor.dimensions() != Dimensions::Scalar || !integer || accessor.sparse().is_some() {
         return Err("indices must be plain unsigned integers".into());
@@ -114,7 +176,7 @@ pub(super) fn indices(accessor: &Accessor<'_>, buffers: &[Vec<u8>]) -> Result<Ve
     Ok(elements.iter().map(unsigned).collect())
 }
 
-fn sparse_indices(sparse: &sparse::Sparse<'_>, buffers: &[Vec<u8>]) -> Result<Vec<u32>, String> {
+fn sparse_indices(sparse: &sparse::Sparse<'_>, buffers: &[Buffer]) -> Result<Vec<u32>, String> {
     let indices = sparse.indices();
     let size = indices.index_type().size();
     let elements = Elements::new(buffers, &indices.view(), indices.offset(), size, sparse.count())?;

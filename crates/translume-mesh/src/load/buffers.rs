@@ -1,47 +1,81 @@
 //! The bytes behind a glTF document: the chunk of a GLB, data URIs and files beside the document.
 
-use std::path::Path;
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
+use std::rc::Rc;
 
 use gltf::buffer::Source;
 
 use super::{LoadError, read_file};
 
-/// Loads every buffer, each cut to its stated length.
+/// The bytes of one buffer. Buffers that name the same file share it.
+pub(super) struct Buffer {
+    file: Rc<Vec<u8>>,
+    length: usize,
+}
+
+impl Buffer {
+    pub(super) fn bytes(&self) -> &[u8] {
+        self.file.get(..self.length).unwrap_or_default()
+    }
+}
+
+/// Loads every buffer, each cut to its stated length, and says how many bytes of other files were read.
 pub(super) fn load(
     path: &Path,
     document: &gltf::Document,
     blob: Option<Vec<u8>>,
-) -> Result<Vec<Vec<u8>>, LoadError> {
-    let mut blob = blob;
-    document.buffers().map(|buffer| one(path, &buffer, &mut blob)).collect()
+) -> Result<(Vec<Buffer>, usize), LoadError> {
+    let mut loader = Loader { path, blob, files: HashMap::new(), read: 0 };
+    let buffers = document.buffers().map(|buffer| loader.load(&buffer)).collect::<Result<_, _>>()?;
+    Ok((buffers, loader.read))
 }
 
-fn one(path: &Path, buffer: &gltf::Buffer<'_>, blob: &mut Option<Vec<u8>>) -> Result<Vec<u8>, LoadError> {
-    let error = |reason: String| LoadError::Gltf {
-        file: path.display().to_string(),
-        element: format!("buffers[{}]", buffer.index()),
-        reason,
-    };
-    let mut bytes = match buffer.source() {
-        Source::Bin => blob.take().ok_or_else(|| error("there is no binary chunk".into()))?,
-        Source::Uri(uri) => match uri.strip_prefix("data:") {
-            Some(data) => decode_data_uri(data).map_err(error)?,
-            None => read_file(&beside(path, uri).map_err(error)?)?,
-        },
-    };
-    if bytes.len() < buffer.length() {
-        return Err(error(format!(
-            "it should hold {} bytes, but there are {}",
-            buffer.length(),
-            bytes.len()
-        )));
+struct Loader<'a> {
+    path: &'a Path,
+    blob: Option<Vec<u8>>,
+    files: HashMap<PathBuf, Rc<Vec<u8>>>,
+    read: usize,
+}
+
+impl Loader<'_> {
+    fn load(&mut self, buffer: &gltf::Buffer<'_>) -> Result<Buffer, LoadError> {
+        let path = self.path;
+        let error = |reason: String| LoadError::Gltf {
+            file: path.display().to_string(),
+            element: format!("buffers[{}]", buffer.index()),
+            reason,
+        };
+        let length = buffer.length();
+        let file = match buffer.source() {
+            Source::Bin => Rc::new(self.blob.take().ok_or_else(|| error("there is no binary chunk".into()))?),
+            Source::Uri(uri) => match uri.strip_prefix("data:") {
+                Some(data) => Rc::new(decode_data_uri(data).map_err(error)?),
+                None => self.file(&beside(path, uri).map_err(error)?)?,
+            },
+        };
+        if file.len() < length {
+            let there = file.len();
+            return Err(error(format!("it should hold {length} bytes, but there are {there}")));
+        }
+        Ok(Buffer { file, length })
     }
-    bytes.truncate(buffer.length());
-    Ok(bytes)
+
+    fn file(&mut self, path: &Path) -> Result<Rc<Vec<u8>>, LoadError> {
+        // One file has many names: a.bin, ./a.bin. Where it has none, reading it says so.
+        let name = path.canonicalize().unwrap_or_else(|_| path.to_owned());
+        if let Some(file) = self.files.get(&name) {
+            return Ok(Rc::clone(file));
+        }
+        let file = Rc::new(read_file(path)?);
+        self.read += file.len();
+        self.files.insert(name, Rc::clone(&file));
+        Ok(file)
+    }
 }
 
 /// The file that a relative reference (RFC 3986) names, seen from the document.
-fn beside(path: &Path, uri: &str) -> Result<std::path::PathBuf, String> {
+fn beside(path: &Path, uri: &str) -> Result<PathBuf, String> {
     let relative = percent_decode(uri).ok_or_else(|| format!("its URI {uri:?} is malformed"))?;
     if relative.contains(':') || relative.starts_with(['/', '\\']) {
         return Err(format!("its URI {uri:?} is not relative to the document"));

@@ -1,7 +1,7 @@
 //! Mesh files: OBJ, glTF and GLB.
 //!
-//! A loader never panics, whatever the file holds, and reserves no memory that the file's own length does not
-//! justify. Its errors name the file, the element and a way out.
+//! A loader never panics, whatever the file holds, and reserves memory below a fixed bound or in proportion to the file's
+//! own length. Its errors name the file, the element and a way out.
 
 mod accessor;
 mod buffers;
@@ -10,6 +10,7 @@ mod obj;
 
 use std::path::Path;
 
+use crate::material::Material;
 use crate::mesh::Mesh;
 use crate::repair::{RepairError, RepairReport, repair};
 use crate::rig::Rig;
@@ -27,8 +28,20 @@ pub struct Loaded {
     pub repairs: RepairReport,
     /// What a unit of the file is, where the format says so: 1 for glTF (its specification, section 3.4), `None` for OBJ.
     pub metres_per_unit: Option<f32>,
-    /// What moves it, where the file has animations or skins.
+    /// What moves it, where the file has animations or skins; without joints, nodes and animations where it has nothing but
+    /// morph targets with default weights other than 0.
     pub rig: Option<Rig>,
+    /// What it is made of. A body is one medium, so of the materials that describe a scattering medium
+    /// ([`Material::scattering`]) it is the one that covers the largest area of the rest pose; where none does, the one that
+    /// covers the largest area. `None` where no material covers anything, and for OBJ.
+    pub material: Option<Material>,
+}
+
+/// What a format's reader returns.
+struct Model {
+    mesh: Mesh,
+    rig: Option<Rig>,
+    material: Option<Material>,
 }
 
 /// Why a file could not be loaded.
@@ -111,23 +124,44 @@ pub enum LoadError {
 /// Reads a mesh and repairs it. The extension, in any case, decides the format.
 ///
 /// OBJ: faces of any arity become fans (right for convex ones), objects and groups merge, vertices split where normals
-/// differ, texture coordinates and materials are ignored. glTF and GLB: the nodes of the default scene, with their
-/// transforms, merge into one mesh; morph targets merge by index; skinned meshes keep their bind pose. Target names stay
-/// empty: glTF keeps them in application data.
+/// differ, texture coordinates and materials are ignored.
+///
+/// glTF and GLB: the default scene as one mesh.
+///
+/// - *Parts.* Every triangle primitive of every node, where the node's default transform puts it. `TEXCOORD_0` becomes
+///   [`Mesh::uvs`]; points, lines, colours, tangents, further coordinates, cameras, lights and images are not read.
+/// - *Skins.* Where the file has animations or skins, every vertex follows joints: of the skin (all sets of joints and
+///   weights, brought to a sum of 1; a vertex without weight follows the first joint it names), or one for its node. A part
+///   with a skin rests in the shape it was bound in, put in place by the default transform of the skin's first joint and its
+///   inverse bind matrix, or left as modelled where that cannot be undone. What a node's default transform flattens (a
+///   scale of 0) rests flat, and is dropped with the other triangles without area.
+/// - *Morph targets.* They merge by their number where all nodes that have some are driven alike (one node, or nothing
+///   animated and the same default weights), else each node's targets are the mesh's own. Names are those of
+///   `extras.targetNames`; default weights go to [`Rig::weights`]. Normals and tangents in targets are not read.
+/// - *Animations.* Translation, rotation, scale and weights; step, linear and cubic. Channels that move nothing in the scene
+///   are left out.
+/// - *Materials.* [`Loaded::material`]; factors and no textures, nor the transforms of their coordinates.
+///
+/// Draco, Meshopt and other compressed geometry is refused. A document may use the same data again and again, but to no
+/// more than 256 MB, or 24 bytes for each of its own.
 ///
 /// # Errors
 /// [`LoadError`], which names the file and the element.
 pub fn load(path: &Path) -> Result<Loaded, LoadError> {
     let extension = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase());
     let file = path.display().to_string();
-    let (mut mesh, metres_per_unit) = match extension.as_deref() {
-        Some("obj") => (obj::read(&file, &read_file(path)?)?, None),
+    let (model, metres_per_unit) = match extension.as_deref() {
+        Some("obj") => {
+            let mesh = obj::read(&file, &read_file(path)?)?;
+            (Model { mesh, rig: None, material: None }, None)
+        }
         Some("gltf" | "glb") => (gltf::read(path, &read_file(path)?)?, Some(1.0)),
         _ => return Err(LoadError::UnknownExtension { file }),
     };
+    let Model { mut mesh, rig, material } = model;
     mesh.name = path.file_name().map_or(file, |name| name.to_string_lossy().into_owned());
     let (mesh, repairs) = repair(mesh)?;
-    Ok(Loaded { mesh, repairs, metres_per_unit, rig: None })
+    Ok(Loaded { mesh, repairs, metres_per_unit, rig, material })
 }
 
 fn read_file(path: &Path) -> Result<Vec<u8>, LoadError> {

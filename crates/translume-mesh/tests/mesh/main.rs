@@ -6,10 +6,15 @@ mod atlas;
 mod fixtures;
 #[cfg(test)]
 #[cfg(feature = "load")]
+mod gltf;
+#[cfg(test)]
+#[cfg(feature = "load")]
 mod load_gltf;
 #[cfg(test)]
 #[cfg(feature = "load")]
 mod load_obj;
+#[cfg(test)]
+mod material;
 #[cfg(test)]
 #[cfg(all(feature = "load", feature = "unwrap"))]
 mod models;
@@ -19,6 +24,8 @@ mod normals;
 mod order;
 #[cfg(test)]
 mod repair;
+#[cfg(test)]
+mod rig;
 #[cfg(test)]
 #[cfg(feature = "unwrap")]
 mod unwrap;

@@ -1,6 +1,27 @@
-//! A rig: nodes, joints and the animations that move them.
+//! A rig: nodes, joints and the animations that move them; from a time to a pose, and from a pose to positions.
+//!
+//! ```no_run
+//! # #[cfg(feature = "load")]
+//! # fn example() -> Result<(), Box<dyn std::error::Error>> {
+//! use translume_mesh::{load, rig};
+//!
+//! let loaded = load::load("fox.glb".as_ref())?;
+//! if let Some(rig) = &loaded.rig {
+//!     let pose = rig.pose(rig.animations.first(), 0.5);
+//!     let positions = rig::posed(&loaded.mesh, &pose)?;
+//! }
+//! # Ok(())
+//! # }
+//! ```
 //!
 //! Source: Khronos, glTF 2.0 specification, sections 3.7.3 (skins), 3.11 (animations) and appendix C (interpolation).
+
+mod pose;
+mod sample;
+
+pub use pose::{PoseError, posed, posed_into};
+#[cfg(feature = "load")]
+pub(crate) use {pose::affine, sample::unit};
 
 /// A hierarchy of nodes, the joints that move a mesh, and the animations of both.
 ///
