@@ -21,8 +21,12 @@ macro_rules! shader {
     };
 }
 
-/// Rest pose and morph targets → positions and normals.
-pub const DEFORM: Shader = shader!("deform", "shared/dispatch.wgsl", "deform.wgsl");
+/// Rest pose, morph targets, joints and warp → positions, and normals of a rigid body.
+pub const DEFORM: Shader =
+    shader!("deform", "shared/dispatch.wgsl", "shared/warp.wgsl", "shared/deform.wgsl", "deform.wgsl");
+/// Deformed positions → normals.
+pub const NORMALS: Shader =
+    shader!("normals", "shared/dispatch.wgsl", "shared/warp.wgsl", "shared/deform.wgsl", "normals.wgsl");
 /// Depth maps from lights.
 pub const SHADOW: Shader = shader!("shadow", "shadow.wgsl");
 /// Lights → position, normal, area, irradiance of every texel.
@@ -58,7 +62,7 @@ pub const COMPOSITE: Shader = shader!(
 );
 
 /// Every module, in the order light flows through them.
-pub const ALL: [Shader; 7] = [DEFORM, SHADOW, GATHER, CLUSTER, SCATTER, RESOLVE, COMPOSITE];
+pub const ALL: [Shader; 8] = [DEFORM, NORMALS, SHADOW, GATHER, CLUSTER, SCATTER, RESOLVE, COMPOSITE];
 
 /// WGSL functions for a host's own material: `translume_exitance(texture, uv)` samples radiant exitance B, and
 /// `fresnel_transmittance(eta, cosine)` weighs what leaves towards the eye: L = F_t·B/π.

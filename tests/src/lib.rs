@@ -17,6 +17,6 @@ mod twin;
 pub use check::{Check, at_least, at_most, holds, notices, relative_rmse};
 pub use fixture::Fixture;
 pub use gpu::{Gpu, gpu};
-pub use models::{Model, creature, cuboids, plane, sphere, sphere_with, teapot};
+pub use models::{Model, creature, cuboids, limb, plane, sphere, sphere_with, teapot};
 pub use picture::{Shot, difference};
 pub use twin::{Pose, dipoles, light, luminous, sum};

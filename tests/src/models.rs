@@ -1,7 +1,7 @@
 //! Small meshes with small atlases: a software rasteriser has to run them all.
 
 use std::sync::{Arc, OnceLock};
-use translume_mesh::{Atlas, AtlasOptions, AtlasVertex, Mesh, builtin};
+use translume_mesh::{Atlas, AtlasOptions, AtlasVertex, Influence, Mesh, MorphTarget, Skin, builtin};
 
 /// A mesh and its atlas.
 #[derive(Clone, Debug)]
@@ -43,6 +43,27 @@ pub fn sphere() -> Arc<Model> {
 #[must_use]
 pub fn sphere_with(size: u32) -> Arc<Model> {
     Model::new(builtin::sphere([0.0; 3], 50.0, 3), size)
+}
+
+/// The sphere with a morph target that pulls its front out, and a skin of three joints, one above the other.
+#[must_use]
+pub fn limb() -> Arc<Model> {
+    static MODEL: OnceLock<Arc<Model>> = OnceLock::new();
+    Arc::clone(MODEL.get_or_init(|| {
+        let mut mesh = builtin::sphere([0.0; 3], 50.0, 3);
+        let pulled = mesh.positions.iter().map(|p| [0.0, 0.0, p[2].max(0.0)]).collect();
+        mesh.targets = vec![MorphTarget { name: "pulled".to_owned(), position_deltas: pulled }];
+        // Below the lowest joint and above the highest there is one influence, between two of them two.
+        let influences = mesh.positions.iter().flat_map(|p| {
+            let place = (p[1] / 30.0 + 1.0).clamp(0.0, 2.0);
+            let below = place.floor().min(1.0);
+            let influence =
+                |joint: f32| Influence { joint: joint as u32, weight: 1.0 - (place - joint).abs() };
+            [influence(below), influence(below + 1.0)]
+        });
+        mesh.skin = Some(Skin { joints: 3, per_vertex: 2, influences: influences.collect() });
+        Model::new(mesh, 48)
+    }))
 }
 
 /// Newell's teapot, 992 triangles, atlas 64².

@@ -3,6 +3,7 @@
 use crate::Fixture;
 use glam::{DMat4, DVec3, Mat4};
 use translume::{Deformation, Frame, Light, Lighting, Medium, Region};
+use translume_mesh::Warp;
 use translume_reference::gather::{Gather, Source};
 use translume_reference::{Dipole, Surface, deform};
 
@@ -13,21 +14,31 @@ pub struct Pose {
     pub model: Mat4,
     /// One weight per morph target.
     pub weights: Vec<f32>,
+    /// One matrix per joint of the mesh's skin, or none for joints at rest.
+    pub joints: Vec<[[f32; 4]; 4]>,
+    /// Inflation, twist and bend.
+    pub warp: Warp,
 }
 
 impl Pose {
     /// As loaded, for a mesh with this many morph targets.
     #[must_use]
     pub fn rest(targets: usize) -> Self {
-        Self { model: Mat4::IDENTITY, weights: vec![0.0; targets] }
+        Self { model: Mat4::IDENTITY, weights: vec![0.0; targets], joints: Vec::new(), warp: Warp::default() }
     }
 
     /// The frame that shows this pose in this light.
     #[must_use]
     pub fn frame<'a>(&'a self, lights: &'a [Light]) -> Frame<'a> {
+        let deformation = if self.joints.is_empty() {
+            Deformation::Morph(&self.weights)
+        } else {
+            Deformation::Pose { weights: &self.weights, joints: &self.joints }
+        };
         Frame {
             model: self.model.to_cols_array_2d(),
-            deformation: Deformation::Morph(&self.weights),
+            deformation,
+            warp: self.warp,
             lighting: Lighting::Lights(lights),
         }
     }
@@ -38,29 +49,28 @@ impl Fixture {
     #[must_use]
     pub fn twin_positions(&self, pose: &Pose) -> Vec<[f64; 3]> {
         let weights: Vec<f64> = pose.weights.iter().copied().map(f64::from).collect();
+        let joints: Vec<_> =
+            pose.joints.iter().map(|joint| joint.map(|column| column.map(f64::from))).collect();
         let model = pose.model.as_dmat4();
-        deform::positions(&self.model.mesh, &weights, 1.0)
+        let deformed = deform::Pose { weights: &weights, joints: &joints, warp: pose.warp };
+        deform::posed(&self.model.mesh, &deformed, 1.0)
             .into_iter()
             .map(|p| (model.transform_point3(p.into()) * self.mm_per_unit).to_array())
             .collect()
     }
 
-    /// Vertex normals of a pose. A mesh without morph targets keeps its own.
+    /// Vertex normals of a pose. A mesh that nothing deforms keeps its own.
     #[must_use]
     pub fn twin_normals(&self, pose: &Pose, positions: &[[f64; 3]]) -> Vec<[f64; 3]> {
         let model = pose.model.as_dmat4();
-        if self.model.mesh.targets.is_empty() {
+        let mesh = &self.model.mesh;
+        if mesh.targets.is_empty() && mesh.skin.is_none() && pose.warp.is_identity() {
             let normal = DMat4::transpose(&model.inverse());
-            let turned = self
-                .model
-                .mesh
-                .normals
-                .iter()
-                .map(|n| normal.transform_vector3(DVec3::from(n.map(f64::from))));
+            let turned = mesh.normals.iter().map(|n| normal.transform_vector3(DVec3::from(n.map(f64::from))));
             return turned.map(|n| n.normalize().to_array()).collect();
         }
         let winding = model.determinant().signum();
-        deform::normals(&self.model.mesh, positions).into_iter().map(|n| n.map(|x| x * winding)).collect()
+        deform::normals(mesh, positions).into_iter().map(|n| n.map(|x| x * winding)).collect()
     }
 
     /// The surface of a pose that does not mirror.

@@ -8,9 +8,11 @@ Examples:
   translume render creature --medium jade -o creature.png
   translume render bunny.obj --medium skimmilk --size 1024 -o bunny.png
   translume render creature --medium wax --frames 48 -o morph.png      an animated PNG
+  translume render fox.glb --animation Walk --frames 24 -o walk.png    another
+  translume render spot.obj --twist 90 --bend 40 -o candy.png
   translume render --scene scene.json -o scene.exr                     linear radiance, full float
   translume inspect bunny.obj --json
-  translume inspect creature teapot bunny.obj --table                  one line each, evened out and not
+  translume inspect creature teapot bunny.obj --table                  a line for each
 
 MODEL is an OBJ, glTF or GLB file, or a built-in: sphere, torus-knot, teapot, creature.
 RUST_LOG=info shows what wgpu has to say; WGPU_ADAPTER_NAME picks an adapter.";
@@ -56,6 +58,9 @@ pub struct Render {
     /// How the surface is laid out.
     #[command(flatten)]
     pub layout: Layout,
+    /// Even out charts until every texel holds about the same area of the surface.
+    #[arg(long)]
+    pub even: bool,
     /// Diffuse profile: dipole (the paper's formula to the letter) or dipole-normalised.
     #[arg(long, value_name = "NAME", default_value = "dipole-normalised")]
     pub profile: String,
@@ -86,7 +91,23 @@ pub struct Render {
     /// Weight of each morph target, separated by commas.
     #[arg(long, value_name = "W,…", value_delimiter = ',', allow_negative_numbers = true)]
     pub morph: Vec<f32>,
-    /// Frames of an animated PNG: through the first morph target and back, or once around where there is none.
+    /// Degrees by which the top turns against the bottom.
+    #[arg(long, value_name = "DEGREES", allow_negative_numbers = true)]
+    pub twist: Option<f32>,
+    /// Degrees of the arc that the upright axis becomes; positive leans to the right.
+    #[arg(long, value_name = "DEGREES", allow_negative_numbers = true)]
+    pub bend: Option<f32>,
+    /// Units of the model by which the surface moves outwards.
+    #[arg(long, value_name = "X", allow_negative_numbers = true)]
+    pub inflate: Option<f32>,
+    /// An animation of the model, by name or by number from 0; a wrong name lists them all.
+    #[arg(long, value_name = "NAME")]
+    pub animation: Option<String>,
+    /// Seconds into the animation, the first one if none is named.
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
+    pub time: Option<f32>,
+    /// Frames of an animated PNG: all of the animation, if one is named; else through the first morph target and back, or once around
+    /// where there is none.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=2000))]
     pub frames: u32,
     /// Picture to write, .png or .exr.
@@ -112,7 +133,7 @@ pub struct Inspect {
     /// Print JSON; a list where there are several models.
     #[arg(long, conflicts_with = "table")]
     pub json: bool,
-    /// Print a table in Markdown: each model with charts evened out and as they were.
+    /// Print a table in Markdown, a line for each model.
     #[arg(long)]
     pub table: bool,
     /// How the surface is laid out.
@@ -129,7 +150,4 @@ pub struct Layout {
     /// Where charts come from: unwrap, own (the file's texture coordinates), or auto (own where they are fit for light).
     #[arg(long, value_name = "SOURCE", default_value = "unwrap")]
     pub charts: String,
-    /// Leave charts as the unwrapper flattened them, with texels of unequal area.
-    #[arg(long)]
-    pub uneven: bool,
 }

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 use translume_mesh::load::LoadError;
+use translume_mesh::rig::PoseError;
 use translume_mesh::{AtlasError, RepairError};
 
 #[derive(Debug, thiserror::Error)]
@@ -10,6 +11,8 @@ pub enum Error {
     Load(#[from] LoadError),
     #[error(transparent)]
     Repair(#[from] RepairError),
+    #[error(transparent)]
+    Pose(#[from] PoseError),
     #[error(transparent)]
     Atlas(#[from] AtlasError),
     #[error(transparent)]

@@ -2,9 +2,11 @@
 
 mod cli;
 mod error;
+mod framing;
 mod gpu;
 mod inspect;
 mod model;
+mod motion;
 mod picture;
 mod progress;
 mod render;

@@ -3,13 +3,63 @@
 use crate::cli::Layout;
 use crate::error::Error;
 use crate::progress;
+use glam::{Mat4, Vec3};
+use std::f32::consts::FRAC_PI_2;
 use std::path::Path;
+use translume_mesh::rig::{self, Animation, Pose, Rig};
 use translume_mesh::{Atlas, AtlasOptions, ChartSource, Mesh, RepairReport, builtin, load};
 
-/// A mesh and what had to be done to it.
+/// A mesh, what had to be done to it, and what moves it.
 pub struct Model {
     pub mesh: Mesh,
     pub repairs: RepairReport,
+    /// Without nodes and animations where the file has none.
+    pub rig: Rig,
+    /// From the rig's model space to the mesh's: they differ when the mesh alone was turned.
+    turn: Mat4,
+}
+
+impl Model {
+    fn new(mesh: Mesh, repairs: RepairReport, rig: Option<Rig>) -> Self {
+        let weights = vec![0.0; mesh.targets.len()];
+        let rig = rig.unwrap_or_else(|| Rig { weights, ..Rig::default() });
+        Self { mesh, repairs, rig, turn: Mat4::IDENTITY }
+    }
+
+    /// A pose of the mesh by a rig that is this model's but for its weights.
+    pub fn pose(&self, rig: &Rig, animation: Option<&Animation>, seconds: f32) -> Pose {
+        let mut pose = rig.pose(animation, seconds);
+        for joint in &mut pose.joints {
+            let turned = self.turn * Mat4::from_cols_array_2d(joint) * self.turn.inverse();
+            *joint = turned.to_cols_array_2d();
+        }
+        pose
+    }
+
+    /// Corners of a box around the model as its file shows it.
+    pub fn bounds(&self) -> Result<([f32; 3], [f32; 3]), Error> {
+        let posed = rig::posed(&self.mesh, &self.pose(&self.rig, None, 0.0))?;
+        let points = posed.into_iter().map(Vec3::from);
+        let around = |(low, high): (Vec3, Vec3), p| (low.min(p), high.max(p));
+        let (low, high) = points.fold((Vec3::INFINITY, Vec3::NEG_INFINITY), around);
+        Ok((low.to_array(), high.to_array()))
+    }
+
+    /// From corner to corner of that box.
+    pub fn diagonal(&self) -> Result<f32, Error> {
+        let (low, high) = self.bounds()?;
+        Ok(Vec3::from(low).distance(high.into()))
+    }
+
+    /// Turns a model whose z axis points up, as CAD programs and scanners write them.
+    pub fn turn_z_up(&mut self) {
+        let Mesh { positions, normals, targets, .. } = &mut self.mesh;
+        let deltas = targets.iter_mut().flat_map(|target| &mut target.position_deltas);
+        for vector in positions.iter_mut().chain(normals).chain(deltas) {
+            *vector = [vector[0], vector[2], -vector[1]];
+        }
+        self.turn = Mat4::from_rotation_x(-FRAC_PI_2);
+    }
 }
 
 /// A built-in model by its name, else a file.
@@ -25,17 +75,17 @@ pub fn open(name: &str) -> Result<Model, Error> {
 /// A mesh file.
 pub fn open_file(path: &Path) -> Result<Model, Error> {
     let loaded = load::load(path)?;
-    Ok(Model { mesh: loaded.mesh, repairs: loaded.repairs })
+    Ok(Model::new(loaded.mesh, loaded.repairs, loaded.rig))
 }
 
 /// A mesh made here, through the same checks as one from a file.
 pub fn clean(mesh: Mesh) -> Result<Model, Error> {
     let (mesh, repairs) = translume_mesh::repair::repair(mesh)?;
-    Ok(Model { mesh, repairs })
+    Ok(Model::new(mesh, repairs, None))
 }
 
 /// What the command line says of the atlas.
-pub fn atlas_options(layout: &Layout) -> Result<AtlasOptions, Error> {
+pub fn atlas_options(layout: &Layout, equiareal: bool) -> Result<AtlasOptions, Error> {
     let charts = match layout.charts.as_str() {
         "unwrap" => ChartSource::Unwrap,
         "own" => ChartSource::Own,
@@ -45,7 +95,7 @@ pub fn atlas_options(layout: &Layout) -> Result<AtlasOptions, Error> {
             return Err(Error::Option { option: "--charts", problem });
         }
     };
-    Ok(AtlasOptions { size: layout.atlas, charts, equiareal: !layout.uneven, ..Default::default() })
+    Ok(AtlasOptions { size: layout.atlas, charts, equiareal, ..Default::default() })
 }
 
 /// Builds an atlas behind a progress bar.
@@ -54,12 +104,4 @@ pub fn unwrap(mesh: &Mesh, options: &AtlasOptions) -> Result<Atlas, Error> {
     let atlas = Atlas::build(mesh, options, |step| progress::show(&bar, &step));
     bar.finish_and_clear();
     Ok(atlas?)
-}
-
-/// Turns a model whose z axis points up, as CAD programs and scanners write them.
-pub fn turn_z_up(mesh: &mut Mesh) {
-    let deltas = mesh.targets.iter_mut().flat_map(|target| &mut target.position_deltas);
-    for vector in mesh.positions.iter_mut().chain(&mut mesh.normals).chain(deltas) {
-        *vector = [vector[0], vector[2], -vector[1]];
-    }
 }

@@ -35,7 +35,6 @@ pub enum Format {
 
 /// Linear grey behind the body in a PNG, in the middle and at the rim.
 const BACKDROP: [f32; 2] = [0.075, 0.045];
-const FRAMES_PER_SECOND: u16 = 24;
 
 impl Develop {
     /// `place`: from the middle of the picture, ±1 at its edges.
@@ -117,6 +116,8 @@ pub struct Output {
     path: PathBuf,
     directory: PathBuf,
     pub format: Format,
+    /// How long a frame of an animation is shown, seconds.
+    pub frame_seconds: f32,
 }
 
 impl Output {
@@ -139,7 +140,7 @@ impl Output {
         if path.is_dir() {
             return fail("is a directory; name a file");
         }
-        Ok(Self { path: path.to_owned(), directory, format })
+        Ok(Self { path: path.to_owned(), directory, format, frame_seconds: 1.0 / 24.0 })
     }
 
     /// Writes one picture, or an animation of several.
@@ -148,7 +149,9 @@ impl Output {
         let mut file = NamedTempFile::new_in(&self.directory)
             .map_err(|error| fail(format!("cannot be written: {error}")))?;
         match self.format {
-            Format::Png => write_png(&mut file, frames).map_err(|error| fail(error.to_string()))?,
+            Format::Png => {
+                write_png(&mut file, frames, self.frame_seconds).map_err(|error| fail(error.to_string()))?;
+            }
             Format::Exr => write_exr(&mut file, &frames[0]).map_err(|error| fail(error.to_string()))?,
         }
         readable_by_all(file.as_file()).map_err(|error| fail(error.to_string()))?;
@@ -167,20 +170,31 @@ fn readable_by_all(file: &std::fs::File) -> std::io::Result<()> {
     file.sync_all()
 }
 
-fn write_png(file: &mut NamedTempFile, frames: &[Picture]) -> Result<(), png::EncodingError> {
+fn write_png(
+    file: &mut NamedTempFile,
+    frames: &[Picture],
+    frame_seconds: f32,
+) -> Result<(), png::EncodingError> {
     let mut encoder = png::Encoder::new(BufWriter::new(file), frames[0].width, frames[0].height);
     encoder.set_color(png::ColorType::Rgb);
     encoder.set_depth(png::BitDepth::Eight);
     encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
     if frames.len() > 1 {
         encoder.set_animated(frames.len() as u32, 0)?;
-        encoder.set_frame_delay(1, FRAMES_PER_SECOND)?;
+        let (numerator, denominator) = delay(frame_seconds);
+        encoder.set_frame_delay(numerator, denominator)?;
     }
     let mut writer = encoder.write_header()?;
     for frame in frames {
         writer.write_image_data(&frame.to_srgb())?;
     }
     writer.finish()
+}
+
+/// Seconds as a fraction of 16-bit numbers: in steps of 0.1 ms while they fit, else in whole seconds, up to 18 hours.
+fn delay(seconds: f32) -> (u16, u16) {
+    let fine = (seconds * 1e4).round();
+    if fine <= f32::from(u16::MAX) { (fine as u16, 10_000) } else { (seconds.round() as u16, 1) }
 }
 
 fn write_exr(file: &mut NamedTempFile, picture: &Picture) -> exr::error::UnitResult {
@@ -235,6 +249,12 @@ mod tests {
         assert_eq!(std::fs::read_dir(directory.path()).unwrap().count(), 2, "no temporary file stays behind");
         assert!(Output::new(&directory.path().join("grey.bmp")).is_err());
         assert!(Output::new(&directory.path().join("nowhere/grey.png")).is_err());
+    }
+
+    #[test]
+    fn delays_are_fractions() {
+        assert_eq!(delay(1.0 / 24.0), (417, 10_000));
+        assert_eq!(delay(90.2), (90, 1));
     }
 
     #[test]

@@ -2,20 +2,16 @@
 
 use crate::cli::Render;
 use crate::error::Error;
+use crate::framing::Subject;
 use crate::gpu::Gpu;
+use crate::motion::{Motion, Wish};
 use crate::picture::{Develop, Format, Output};
-use crate::scene::{Scene, SceneCamera};
+use crate::scene::{Scene, SceneCamera, SceneLight};
 use crate::studio::Studio;
 use crate::{model, progress};
-use glam::{Mat4, Vec3};
-use std::f32::consts::TAU;
 use std::path::Path;
 use std::time::Instant;
-use translume::{
-    AmbientLight, BodyDescriptor, Camera, Deformation, DirectionalLight, Frame, Gloss, Light, Lighting,
-    LookAt, Medium, Method, PointLight, Profile,
-};
-use translume_mesh::Mesh;
+use translume::{BodyDescriptor, Frame, Gloss, Lighting, Medium, Method, Profile};
 
 /// Everything a picture needs, in the units of the scene.
 struct Setup {
@@ -23,9 +19,11 @@ struct Setup {
     flat_normals: bool,
     medium: Medium,
     mm_per_unit: f32,
-    lights: Vec<Light>,
-    camera: SceneCamera,
-    morph: Vec<f32>,
+    /// `None` for lamps that suit the subject.
+    lights: Option<Vec<SceneLight>>,
+    /// `None` for one that sees all of the subject.
+    camera: Option<SceneCamera>,
+    wish: Wish,
     gloss: Gloss,
 }
 
@@ -36,20 +34,29 @@ const DEFAULT_SIZE: u32 = 768;
 const DEFAULT_ROUGHNESS: f32 = 0.35;
 
 pub fn run(arguments: &Render) -> Result<(), Error> {
-    let output = Output::new(&arguments.output)?;
+    let mut output = Output::new(&arguments.output)?;
     if arguments.frames > 1 && output.format != Format::Png {
         return Err(Error::Option { option: "--frames", problem: "only a PNG can be animated".to_owned() });
     }
     let profile = Profile::named(&arguments.profile)?;
     let method = method(arguments)?;
     let gpu = Gpu::new()?;
-    let options = model::atlas_options(&arguments.layout)?;
+    let options = model::atlas_options(&arguments.layout, arguments.even)?;
     check_atlas(options.size, &gpu)?;
     let setup = match &arguments.scene {
         Some(path) => from_scene(path, arguments)?,
         None => from_model(arguments.model.as_deref().unwrap_or_default(), arguments)?,
     };
     let mesh = &setup.model.mesh;
+    let motion =
+        Motion::new(&setup.model, &setup.wish, arguments.frames).map_err(|error| blame(error, arguments))?;
+    output.frame_seconds = motion.frame_seconds().unwrap_or(output.frame_seconds);
+    let subject = Subject::new(motion.points()?);
+    let camera = sized(setup.camera, &subject, arguments);
+    let lights = match &setup.lights {
+        Some(lights) => lights.iter().map(|light| light.light(-1e-4 * mesh.diagonal())).collect(),
+        None => subject.lamps(arguments.view),
+    };
     let start = Instant::now();
     let atlas = model::unwrap(mesh, &options)?;
     let unwrapped = start.elapsed().as_secs_f32();
@@ -67,8 +74,8 @@ pub fn run(arguments: &Render) -> Result<(), Error> {
         Format::Png => 2,
         Format::Exr => 1,
     });
-    let mut studio = Studio::new(gpu, &descriptor, setup.camera.width, setup.camera.height, samples)?;
-    let camera = camera(&setup);
+    let mut studio = Studio::new(gpu, &descriptor, camera.width, camera.height, samples)?;
+    let camera = subject.look(&camera);
     let develop = match output.format {
         Format::Png => Develop::Display { exposure: arguments.exposure },
         Format::Exr => Develop::Radiance,
@@ -78,11 +85,12 @@ pub fn run(arguments: &Render) -> Result<(), Error> {
     let start = Instant::now();
     let mut frames = Vec::new();
     for k in 0..arguments.frames {
-        let (model, weights) = pose(&setup, k, arguments.frames);
+        let moment = motion.moment(k);
         let frame = Frame {
-            model: model.to_cols_array_2d(),
-            deformation: Deformation::Morph(&weights),
-            lighting: Lighting::Lights(&setup.lights),
+            model: moment.model.to_cols_array_2d(),
+            deformation: (&moment.pose).into(),
+            warp: motion.warp,
+            lighting: Lighting::Lights(&lights),
         };
         frames.push(studio.take(&frame, &camera, setup.gloss, develop)?);
         bar.inc(1);
@@ -126,61 +134,83 @@ fn check_atlas(size: u32, gpu: &Gpu) -> Result<(), Error> {
 fn from_scene(path: &Path, arguments: &Render) -> Result<Setup, Error> {
     let scene = Scene::read(path)?;
     let (model, flat_normals) = scene.model(path)?;
-    let mesh = &model.mesh;
-    let mm_per_unit = arguments.mm_per_unit.unwrap_or(scene.length_unit.mm());
-    let mut camera = scene.camera.unwrap_or_else(|| frame_all(mesh, DEFAULT_SIZE, arguments.view));
-    if let Some(width) = arguments.size {
-        let height = (f64::from(width) * f64::from(camera.height) / f64::from(camera.width)).round() as u32;
-        (camera.width, camera.height) = (width, height.max(1));
-    }
-    let lights = match &scene.lights {
-        Some(lights) => lights.iter().map(|light| light.light(-1e-4 * mesh.diagonal())).collect(),
-        None => key_and_fill(mesh, arguments.view),
-    };
     let medium = match &arguments.medium {
         Some(name) => Medium::preset(name)?,
         None => scene.medium()?.unwrap_or_default(),
     };
-    let morph =
-        morph_weights(if arguments.morph.is_empty() { &scene.morph } else { &arguments.morph }, mesh)?;
-    let gloss = gloss(arguments.gloss.unwrap_or(0.0))?;
-    Ok(Setup { model, flat_normals, medium, mm_per_unit, lights, camera, morph, gloss })
+    Ok(Setup {
+        model,
+        flat_normals,
+        medium,
+        mm_per_unit: arguments.mm_per_unit.unwrap_or(scene.length_unit.mm()),
+        wish: overridden(scene.wish(), arguments),
+        lights: scene.lights,
+        camera: scene.camera,
+        gloss: gloss(arguments.gloss.unwrap_or(0.0))?,
+    })
 }
 
 fn from_model(name: &str, arguments: &Render) -> Result<Setup, Error> {
     let medium = arguments.medium.as_deref().map(Medium::preset).transpose()?.unwrap_or(Medium::JADE);
     let mut model = model::open(name)?;
     if arguments.up == "z" {
-        model::turn_z_up(&mut model.mesh);
+        model.turn_z_up();
     }
-    let mesh = &model.mesh;
+    let mm_per_unit = match arguments.mm_per_unit {
+        Some(mm_per_unit) => mm_per_unit,
+        None => ASSUMED_DIAGONAL_MM / model.diagonal()?,
+    };
     Ok(Setup {
         flat_normals: false,
         medium,
-        mm_per_unit: arguments.mm_per_unit.unwrap_or(ASSUMED_DIAGONAL_MM / mesh.diagonal()),
-        lights: key_and_fill(mesh, arguments.view),
-        camera: frame_all(mesh, arguments.size.unwrap_or(DEFAULT_SIZE), arguments.view),
-        morph: morph_weights(&arguments.morph, mesh)?,
+        mm_per_unit,
+        lights: None,
+        camera: None,
+        wish: overridden(Wish::default(), arguments),
         gloss: gloss(arguments.gloss.unwrap_or(DEFAULT_ROUGHNESS))?,
         model,
     })
 }
 
-fn morph_weights(given: &[f32], mesh: &Mesh) -> Result<Vec<f32>, Error> {
-    if given.len() > mesh.targets.len() {
-        let problem =
-            format!("{} weights, but {} has {} morph targets", given.len(), mesh.name, mesh.targets.len());
-        return Err(Error::Option { option: "--morph", problem });
+/// The command line has the last word.
+fn overridden(wish: Wish, arguments: &Render) -> Wish {
+    Wish {
+        morph: if arguments.morph.is_empty() { wish.morph } else { arguments.morph.clone() },
+        animation: arguments.animation.clone().or(wish.animation),
+        time: arguments.time.or(wish.time),
+        twist_deg: arguments.twist.unwrap_or(wish.twist_deg),
+        bend_deg: arguments.bend.unwrap_or(wish.bend_deg),
+        inflate: arguments.inflate.unwrap_or(wish.inflate),
     }
-    let mut weights = given.to_vec();
-    weights.resize(mesh.targets.len(), 0.0);
-    Ok(weights)
 }
 
-/// Middle and radius of a sphere around the mesh.
-fn bounding_sphere(mesh: &Mesh) -> (Vec3, f32) {
-    let (low, high) = mesh.bounds().unwrap_or_default();
-    ((Vec3::from(low) + Vec3::from(high)) * 0.5, 0.5 * mesh.diagonal())
+/// A wish that cannot be met came from the scene where the command line is silent.
+fn blame(error: Error, arguments: &Render) -> Error {
+    let said = |option| match option {
+        "--morph" => !arguments.morph.is_empty(),
+        "--animation" => arguments.animation.is_some(),
+        "--time" => arguments.time.is_some(),
+        "--twist" => arguments.twist.is_some(),
+        "--bend" => arguments.bend.is_some(),
+        _ => arguments.inflate.is_some(),
+    };
+    match (error, &arguments.scene) {
+        (Error::Option { option, problem }, Some(path)) if !said(option) => Error::Scene {
+            path: path.clone(),
+            problem: format!("{}: {problem}", option.trim_start_matches('-')),
+        },
+        (error, _) => error,
+    }
+}
+
+/// The scene's camera or one that sees all of the subject, with as many pixels as the command line says.
+fn sized(camera: Option<SceneCamera>, subject: &Subject, arguments: &Render) -> SceneCamera {
+    let mut camera = camera.unwrap_or_else(|| subject.camera(DEFAULT_SIZE, arguments.view));
+    if let Some(width) = arguments.size {
+        let height = (f64::from(width) * f64::from(camera.height) / f64::from(camera.width)).round() as u32;
+        (camera.width, camera.height) = (width, height.max(1));
+    }
+    camera
 }
 
 fn gloss(roughness: f32) -> Result<Gloss, Error> {
@@ -192,84 +222,4 @@ fn gloss(roughness: f32) -> Result<Gloss, Error> {
             problem: format!("{roughness} is neither 0 nor between 0.03 and 1"),
         }),
     }
-}
-
-/// From the object towards a camera at these degrees, and the frame around that direction turned with it.
-fn turned(view: [f32; 2], v: Vec3) -> Vec3 {
-    let [yaw, pitch] = view.map(f32::to_radians);
-    Mat4::from_rotation_y(yaw).transform_vector3(Mat4::from_rotation_x(-pitch).transform_vector3(v))
-}
-
-/// The whole object in the picture, at rest and at each morph target.
-fn frame_all(mesh: &Mesh, size: u32, view: [f32; 2]) -> SceneCamera {
-    const FOV_DEG: f32 = 26.0;
-    const FILLED: f32 = 0.86;
-    let (middle, _) = bounding_sphere(mesh);
-    let tangent = FILLED * (0.5 * FOV_DEG.to_radians()).tan();
-    let [right, up, back] = [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| turned(view, axis));
-    let rest = mesh.positions.iter().copied().map(Vec3::from);
-    let posed = mesh.targets.iter().flat_map(|target| mesh.positions.iter().zip(&target.position_deltas));
-    let distance =
-        rest.chain(posed.map(|(p, d)| Vec3::from(*p) + Vec3::from(*d))).fold(0.0, |distance: f32, point| {
-            let offset = point - middle;
-            distance.max(offset.dot(right).abs().max(offset.dot(up).abs()) / tangent + offset.dot(back))
-        });
-    SceneCamera {
-        eye: (middle + back * distance).to_array(),
-        target: middle.to_array(),
-        up: up.to_array(),
-        fov_deg: FOV_DEG,
-        width: size,
-        height: size,
-    }
-}
-
-/// Seen from the camera: a lamp behind that shines through what is thin, a key from the upper right, and a little sky.
-fn key_and_fill(mesh: &Mesh, view: [f32; 2]) -> Vec<Light> {
-    let (middle, radius) = bounding_sphere(mesh);
-    let lamp = turned([view[0], 0.0], Vec3::new(-0.75, 1.1, -1.5)) * radius * 1.5;
-    vec![
-        Light::Point(PointLight {
-            position: (middle + lamp).to_array(),
-            intensity: [7.5, 6.9, 6.0].map(|c| c * lamp.length_squared()),
-            ..Default::default()
-        }),
-        Light::Directional(DirectionalLight {
-            to_light: turned([view[0], 0.0], Vec3::new(0.9, 0.9, 0.75)).to_array(),
-            irradiance: [1.5, 1.6, 1.75],
-            ..Default::default()
-        }),
-        Light::Ambient(AmbientLight { radiance: [0.08, 0.09, 0.11], ..Default::default() }),
-    ]
-}
-
-fn camera(setup: &Setup) -> Camera {
-    let (middle, radius) = bounding_sphere(&setup.model.mesh);
-    let distance = middle.distance(setup.camera.eye.into());
-    // A morph may double the size of a body; the depth range has room for it.
-    LookAt {
-        eye: setup.camera.eye,
-        target: setup.camera.target,
-        up: setup.camera.up,
-        horizontal_fov: setup.camera.fov_deg.to_radians(),
-        aspect: setup.camera.width as f32 / setup.camera.height as f32,
-        near: (distance - 2.0 * radius).max(0.01 * radius),
-        far: distance + 2.0 * radius,
-    }
-    .into()
-}
-
-/// Frame k of an animation: through the first morph target and back, or once around the upright axis.
-fn pose(setup: &Setup, k: u32, frames: u32) -> (Mat4, Vec<f32>) {
-    let mut weights = setup.morph.clone();
-    if frames < 2 {
-        return (Mat4::IDENTITY, weights);
-    }
-    let turn = TAU * k as f32 / frames as f32;
-    if let Some(weight) = weights.first_mut() {
-        *weight = 0.5 - 0.5 * turn.cos();
-        return (Mat4::IDENTITY, weights);
-    }
-    let (middle, _) = bounding_sphere(&setup.model.mesh);
-    (Mat4::from_translation(middle) * Mat4::from_rotation_y(turn) * Mat4::from_translation(-middle), weights)
 }

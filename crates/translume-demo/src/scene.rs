@@ -2,6 +2,7 @@
 
 use crate::error::Error;
 use crate::model;
+use crate::motion::Wish;
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
 use translume::{AmbientLight, DirectionalLight, Light, Medium, PointLight, Region};
@@ -30,6 +31,30 @@ pub struct Scene {
     /// Weight of each morph target.
     #[serde(default)]
     pub morph: Vec<f32>,
+    #[serde(default)]
+    pub warp: SceneWarp,
+    pub animation: Option<SceneAnimation>,
+    /// Seconds into the animation, the first one if none is named.
+    pub time: Option<f32>,
+}
+
+#[derive(Clone, Copy, Debug, Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct SceneWarp {
+    /// By how much the top turns against the bottom.
+    pub twist_deg: f32,
+    /// The arc that the upright axis becomes.
+    pub bend_deg: f32,
+    /// Outwards, in the scene's unit.
+    pub inflate: f32,
+}
+
+/// An animation by name or by number from 0.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(untagged)]
+pub enum SceneAnimation {
+    Index(usize),
+    Name(String),
 }
 
 #[derive(Clone, Copy, Debug, Default, Deserialize)]
@@ -194,6 +219,13 @@ impl Scene {
         Ok(self.material.map(|m| Medium { sigma_s_prime: m.sigma_s_prime, sigma_a: m.sigma_a, ior: m.eta }))
     }
 
+    /// How the scene's mesh is to be deformed.
+    pub fn wish(&self) -> Wish {
+        let SceneWarp { twist_deg, bend_deg, inflate } = self.warp;
+        let animation = self.animation.as_ref().map(ToString::to_string);
+        Wish { morph: self.morph.clone(), animation, time: self.time, twist_deg, bend_deg, inflate }
+    }
+
     /// The scene's mesh, its path taken relative to the scene file at `path`, and whether its triangles keep their own normals.
     pub fn model(&self, path: &Path) -> Result<(model::Model, bool), Error> {
         match &self.shape {
@@ -216,6 +248,15 @@ impl Scene {
                 })?;
                 Ok((model::clean(mesh)?, *normals == Normals::Flat))
             }
+        }
+    }
+}
+
+impl std::fmt::Display for SceneAnimation {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Index(index) => index.fmt(f),
+            Self::Name(name) => name.fmt(f),
         }
     }
 }

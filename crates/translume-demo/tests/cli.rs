@@ -108,9 +108,20 @@ fn options_that_cannot_be_are_named() {
     refused(&desk, &[&mesh, "--mm-per-unit", "0"], &["ok.obj", "mm per unit"]);
     refused(&desk, &[&mesh, "--theta", "9"], &["opening angle 9"]);
     refused(&desk, &[&mesh, "--morph", "0.5"], &["--morph", "0 morph targets"]);
+    refused(&desk, &[&mesh, "--twist", "60000"], &["--twist", "60000 degrees", "57296"]);
+    refused(&desk, &[&mesh, "--bend=-inf"], &["--bend", "-inf"]);
+    refused(&desk, &[&mesh, "--inflate", "nan"], &["--inflate", "NaN"]);
+    refused(&desk, &[&mesh, "--animation", "Walk"], &["--animation", "ok.obj", "no animations"]);
+    refused(&desk, &[&mesh, "--time", "1"], &["--time", "ok.obj", "no animations"]);
     refused(&desk, &["dodecahedron"], &["dodecahedron"]);
     let scene = desk.file("scene.json", r#"{ "shape": { "type": "mesh", "file": "gone.obj" } }"#);
     refused(&desk, &["--scene", &scene], &["gone.obj"]);
+    let shape = r#""shape": { "type": "sphere", "center": [0, 0, 0], "radius": 1 }"#;
+    let scene = desk.file("warp.json", format!(r#"{{ {shape}, "warp": {{ "bend_deg": 1e6 }} }}"#));
+    refused(&desk, &["--scene", &scene], &["warp.json", "bend: 1000000 degrees"]);
+    refused(&desk, &["--scene", &scene, "--bend", "9e9"], &["--bend", "9000000000 degrees"]);
+    let scene = desk.file("play.json", format!(r#"{{ {shape}, "animation": 3, "time": 1 }}"#));
+    refused(&desk, &["--scene", &scene], &["play.json", "animation: ", "no animations"]);
 }
 
 #[test]

@@ -9,6 +9,7 @@
 //! | [`atlas`] | charts and packing (by `uvunwrap`), the one-time raster into texels, gutters, texel order |
 //! | [`spherical`] | a closed surface without handles laid around a sphere or an egg, as a morph target |
 //! | [`rig`] | nodes, joints, animations: from a time to the weights and matrices of a pose |
+//! | [`warp`] | twist, bend and inflation |
 //! | [`material`] | what a file says a surface and the volume behind it are made of |
 //! | [`builtin`] | sphere, torus knot, Newell's teapot, and the creature that melts into an egg |
 //!
@@ -26,6 +27,7 @@ mod progress;
 pub mod repair;
 pub mod rig;
 pub mod spherical;
+pub mod warp;
 mod weld;
 
 pub use atlas::{Atlas, AtlasError, AtlasReport, AtlasVertex, Texel};
@@ -35,3 +37,4 @@ pub use material::{Material, Scattering};
 pub use mesh::{Influence, Mesh, MorphTarget, Skin};
 pub use progress::Progress;
 pub use repair::{RepairError, RepairOptions, RepairReport};
+pub use warp::Warp;

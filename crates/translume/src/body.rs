@@ -1,12 +1,15 @@
 //! A body: one mesh that light goes through.
 
-use crate::buffers::{self, Buffers, Extent, Outputs};
+use crate::bounds::PoseBounds;
+use crate::buffers::{Buffers, Extent, Outputs};
 use crate::descriptor::BodyDescriptor;
-use crate::frame::{self, Deformation, Frame, GatherBody, Lighting, PoseBounds};
+use crate::frame::{self, Frame, GatherBody, Lighting};
 use crate::kernel_texture::KernelTexture;
 use crate::layout::DeformLayout;
+use crate::pose::{self, Pose};
 use crate::profile::Dipole;
 use crate::stages::cluster::Tree;
+use crate::stages::deform::DeformGroups;
 use crate::stages::scatter::{Method, Scatter};
 use crate::stages::shadow::DepthMaps;
 use crate::stages::{Stage, StageSet, Stages};
@@ -34,7 +37,9 @@ pub struct Body {
     model: Mat4,
     /// [`Profile::exit_scale`] of profile and medium: an integral too long for every picture.
     pub(crate) exit_scale: f32,
-    weights: Vec<f32>,
+    pose: Pose,
+    /// Where the next frame's pose is made, so that a refused one leaves no trace and none allocates.
+    next_pose: Pose,
     lights: Vec<Light>,
     view_count: u32,
     pending: StageSet,
@@ -47,7 +52,7 @@ pub struct Body {
     exitance: wgpu::Texture,
     exitance_view: wgpu::TextureView,
     pub(crate) depth_maps: DepthMaps,
-    deform_group: wgpu::BindGroup,
+    deform_groups: DeformGroups,
     gather_group: wgpu::BindGroup,
     cluster_group: wgpu::BindGroup,
     scatter_group: wgpu::BindGroup,
@@ -61,7 +66,6 @@ impl Body {
         descriptor: &BodyDescriptor<'_>,
     ) -> Result<Self, Error> {
         let BodyDescriptor { mesh, atlas, medium, profile, method, mm_per_unit, .. } = *descriptor;
-        buffers::validate(mesh, atlas)?;
         descriptor.validate(device.limits().max_texture_dimension_2d)?;
         let extent = Extent::new(mesh, atlas);
         extent.check(&device.limits())?;
@@ -73,7 +77,7 @@ impl Body {
         let kernel = KernelTexture::new(device, mesh, atlas);
         let depth_maps = stages.shadow.depth_maps(device, descriptor.shadow_resolution, 1);
         Ok(Self {
-            deform_group: stages.deform.bind(device, &buffers),
+            deform_groups: stages.deform.bind(device, &buffers),
             gather_group: stages.gather.bind(device, &buffers, &depth_maps),
             cluster_group: stages.cluster.bind(device, &buffers),
             scatter_group: stages.scatter.bind(device, &buffers, &kernel.view),
@@ -92,7 +96,8 @@ impl Body {
             method,
             model: Mat4::IDENTITY,
             exit_scale: profile.exit_scale(medium.ior),
-            weights: vec![0.0; mesh.targets.len()],
+            pose: Pose::rest(&extent),
+            next_pose: Pose::rest(&extent),
             lights: Vec::new(),
             view_count: 0,
             pending: StageSet::default(),
@@ -108,7 +113,7 @@ impl Body {
     /// Takes over the inputs of the next frame and uploads what changed. Finds out which stages the frame needs.
     ///
     /// # Errors
-    /// [`Error::Frame`] names the light, weight or matrix that cannot be; the body then keeps its last frame.
+    /// [`Error::Frame`] names the light, weight, matrix or warp that cannot be; the body then keeps its last frame.
     pub fn prepare(
         &mut self,
         device: &wgpu::Device,
@@ -117,15 +122,17 @@ impl Body {
     ) -> Result<(), Error> {
         let model = Mat4::from_cols_array_2d(&frame.model);
         frame::validate_model(model)?;
-        let weights = self.weights_of(frame.deformation)?;
+        self.next_pose.set(frame.deformation, frame.warp)?;
         let Lighting::Lights(lights) = frame.lighting;
         frame::validate_lights(lights)?;
 
-        let moved = self.never_prepared || model != self.model || weights != self.weights;
+        let moved = self.never_prepared || model != self.model || self.next_pose != self.pose;
         let relit = moved || self.surface_stale || lights != self.lights;
         let to_mm = Mat4::from_scale(Vec3::splat(self.mm_per_unit)) * model;
         let winding = to_mm.determinant().signum();
-        let corners = self.bounds.corners(&weights, to_mm);
+        let corners =
+            self.bounds.posed(&self.next_pose).corners().map(|corner| to_mm.transform_point3(corner));
+        frame::validate_corners(&corners)?;
         if relit {
             let body = GatherBody {
                 texels: self.extent.texels,
@@ -144,20 +151,11 @@ impl Body {
             self.pending.insert(StageSet::from_stage_on(Stage::Shadow));
         }
         if moved {
-            let uniform = DeformLayout {
-                model: to_mm.to_cols_array_2d(),
-                normal: to_mm.inverse().transpose().to_cols_array_2d(),
-                vertex_count: self.extent.vertices,
-                target_count: self.extent.targets,
-                winding,
-                padding: 0,
-            };
-            queue.write_buffer(&self.buffers.deform_uniform, 0, bytemuck::bytes_of(&uniform));
-            queue.write_buffer(&self.buffers.weights, 0, bytemuck::cast_slice(&weights));
+            std::mem::swap(&mut self.pose, &mut self.next_pose);
+            self.upload_pose(queue, to_mm, winding);
             self.pending.insert(StageSet::from_stage_on(Stage::Deform));
         }
         self.model = model;
-        self.weights = weights;
         self.lights.clear();
         self.lights.extend_from_slice(lights);
         self.never_prepared = false;
@@ -180,9 +178,10 @@ impl Body {
             let mut pass = begin(encoder, "deform");
             stages.deform.encode(
                 &mut pass,
-                &self.deform_group,
+                &self.deform_groups,
                 self.extent.vertices,
-                self.extent.targets > 0,
+                self.extent.influences_per_vertex > 0,
+                self.pose.deforms(),
             );
         }
         if pending.contains(Stage::Shadow) {
@@ -269,21 +268,19 @@ impl Body {
         self.buffers.outputs(&self.depth_maps)
     }
 
-    fn weights_of(&self, deformation: Deformation<'_>) -> Result<Vec<f32>, Error> {
-        let targets = self.extent.targets as usize;
-        let weights = match deformation {
-            Deformation::Rest => return Ok(vec![0.0; targets]),
-            Deformation::Morph(weights) => weights,
+    fn upload_pose(&self, queue: &wgpu::Queue, to_mm: Mat4, winding: f32) {
+        let uniform = DeformLayout {
+            model: to_mm.to_cols_array_2d(),
+            normal: to_mm.inverse().transpose().to_cols_array_2d(),
+            warp: pose::warp_layout(&self.pose.warp, self.bounds.axis()),
+            vertex_count: self.extent.vertices,
+            target_count: self.extent.targets,
+            influences_per_vertex: self.extent.influences_per_vertex,
+            winding,
         };
-        if weights.len() != targets {
-            let problem = format!("{} morph weights for {targets} targets", weights.len());
-            return Err(Error::Frame { problem, remedy: "give one weight per target" });
-        }
-        if let Some(k) = weights.iter().position(|weight| !weight.is_finite()) {
-            let problem = format!("morph weight {k} is {}", weights[k]);
-            return Err(Error::Frame { problem, remedy: "give finite weights" });
-        }
-        Ok(weights.to_vec())
+        queue.write_buffer(&self.buffers.deform_uniform, 0, bytemuck::bytes_of(&uniform));
+        queue.write_buffer(&self.buffers.weights, 0, bytemuck::cast_slice(&self.pose.weights));
+        queue.write_buffer(&self.buffers.joints, 0, bytemuck::cast_slice(&self.pose.joints));
     }
 
     fn make_room_for_views(&mut self, device: &wgpu::Device, views: u32) {

@@ -2,12 +2,12 @@
 
 use crate::Error;
 use crate::gpu::{self, UNIFORM_STRIDE};
-use crate::layout::{AtlasVertexLayout, Cluster, DeformLayout, GatherLayout, TexelLayout};
+use crate::layout::{AtlasVertexLayout, Cluster, DeformLayout, GatherLayout, InfluenceLayout, TexelLayout};
 use crate::stages::cluster::Tree;
 use crate::stages::scatter::SOURCES_PER_DISPATCH;
 use crate::stages::shadow::DepthMaps;
 use glam::Vec3;
-use translume_mesh::normals::NormalAdjacency;
+use translume_mesh::normals::{NormalAdjacency, smooth_normals};
 use translume_mesh::{Atlas, Mesh};
 use wgpu::BufferUsages;
 
@@ -17,6 +17,8 @@ pub(crate) struct Buffers {
     pub rest: wgpu::Buffer,
     pub deltas: wgpu::Buffer,
     pub weights: wgpu::Buffer,
+    pub influences: wgpu::Buffer,
+    pub joints: wgpu::Buffer,
     pub triangles: wgpu::Buffer,
     pub adjacency: wgpu::Buffer,
     pub positions: wgpu::Buffer,
@@ -41,6 +43,9 @@ pub(crate) struct Extent {
     pub vertices: u32,
     pub triangles: u32,
     pub targets: u32,
+    pub joints: u32,
+    /// 0 for a mesh without a skin.
+    pub influences_per_vertex: u32,
     pub texels: u32,
     pub atlas_size: u32,
 }
@@ -51,6 +56,8 @@ impl Extent {
             vertices: mesh.positions.len() as u32,
             triangles: mesh.triangles.len() as u32,
             targets: mesh.targets.len() as u32,
+            joints: mesh.skin.as_ref().map_or(0, |skin| skin.joints as u32),
+            influences_per_vertex: mesh.skin.as_ref().map_or(0, |skin| skin.per_vertex as u32),
             texels: atlas.texels.len() as u32,
             atlas_size: atlas.size,
         }
@@ -63,15 +70,18 @@ impl Extent {
         let clusters = u64::from(Tree::new(self.texels).clusters()) * size_of::<Cluster>() as u64;
         let pixels = 4 * u64::from(self.atlas_size) * u64::from(self.atlas_size);
         let deltas = 12 * u64::from(self.vertices) * u64::from(self.targets);
+        let influences = 8 * u64::from(self.vertices) * u64::from(self.influences_per_vertex);
         // Every triangle is adjacent to its three corners, and to the copies of those at seams of the mesh.
         let adjacency = 4 * (u64::from(self.vertices) + 6 * u64::from(self.triangles));
         let bindings = [
             ("atlas", pixels, SMALLER_ATLAS),
             ("texels", 16 * u64::from(self.texels), SMALLER_ATLAS),
             ("clusters", clusters, SMALLER_ATLAS),
-            ("mesh", 24 * u64::from(self.vertices), SMALLER_MESH),
+            ("mesh", 36 * u64::from(self.vertices), SMALLER_MESH),
             ("mesh", adjacency, SMALLER_MESH),
             ("morph targets", deltas, "use fewer morph targets"),
+            ("skin", influences, "let fewer joints move a vertex"),
+            ("skin", 64 * u64::from(self.joints), "use fewer joints"),
         ];
         let limit = |what: &str, limit, required, actual, remedy| {
             Err(Error::Limit { what: what.to_owned(), limit, required, actual, remedy })
@@ -97,52 +107,6 @@ impl Extent {
 const SMALLER_ATLAS: &str = "use a smaller atlas, or create the device with higher limits";
 const SMALLER_MESH: &str = "use a smaller mesh, or create the device with higher limits";
 
-/// Whether mesh and atlas belong together and every index leads somewhere.
-pub(crate) fn validate(mesh: &Mesh, atlas: &Atlas) -> Result<(), Error> {
-    let fail = |problem: String, remedy| Err(Error::Body { mesh: mesh.name.clone(), problem, remedy });
-    const REPAIR: &str = "pass the mesh through `translume_mesh::repair` first";
-    const REBUILD: &str = "build the atlas from this very mesh";
-    let vertices = mesh.positions.len();
-    if mesh.triangles.is_empty() || atlas.texels.is_empty() {
-        return fail("no triangle or no texel, so nothing to light".to_owned(), REPAIR);
-    }
-    if mesh.normals.len() != vertices {
-        return fail(format!("{} normals for {vertices} vertices", mesh.normals.len()), REPAIR);
-    }
-    if let Some(vertex) =
-        (0..vertices).find(|&v| !mesh.positions[v].iter().chain(&mesh.normals[v]).all(|x| x.is_finite()))
-    {
-        return fail(format!("vertex {vertex} is not finite"), REPAIR);
-    }
-    if let Some(triangle) = mesh.triangles.iter().position(|t| t.iter().any(|&v| v as usize >= vertices)) {
-        return fail(format!("triangle {triangle} uses a vertex beyond the {vertices} there are"), REPAIR);
-    }
-    for (k, target) in mesh.targets.iter().enumerate() {
-        if target.position_deltas.len() != vertices
-            || !target.position_deltas.iter().flatten().all(|x| x.is_finite())
-        {
-            return fail(format!("morph target {k} needs {vertices} finite deltas"), REPAIR);
-        }
-    }
-    if atlas.triangles.len() != mesh.triangles.len()
-        || atlas.vertices.iter().any(|v| v.xref as usize >= vertices)
-    {
-        return fail("the atlas was built from another mesh".to_owned(), REBUILD);
-    }
-    if atlas.triangles.iter().flatten().any(|&v| v as usize >= atlas.vertices.len()) {
-        return fail("the atlas uses vertices it does not have".to_owned(), REBUILD);
-    }
-    if atlas.pixels.len() != (atlas.size as usize).pow(2) {
-        return fail(format!("the atlas has {} pixels for {}²", atlas.pixels.len(), atlas.size), REBUILD);
-    }
-    if let Some(k) =
-        atlas.texels.iter().position(|t| t.triangle as usize >= mesh.triangles.len() || !t.area.is_finite())
-    {
-        return fail(format!("texel {k} of the atlas stands on no triangle"), REBUILD);
-    }
-    Ok(())
-}
-
 impl Buffers {
     pub fn new(device: &wgpu::Device, mesh: &Mesh, atlas: &Atlas, tree: &Tree) -> Self {
         let storage =
@@ -151,10 +115,20 @@ impl Buffers {
         let vectors = |label, count: usize| gpu::buffer(device, label, 16 * count as u64);
         let extent = Extent::new(mesh, atlas);
 
-        let rest: Vec<f32> =
-            mesh.positions.iter().zip(&mesh.normals).flat_map(|(p, n)| p.iter().chain(n)).copied().collect();
+        let vertices = mesh.positions.iter().zip(&mesh.normals);
+        let vertices = vertices.zip(smooth_normals(&mesh.positions, &mesh.triangles));
+        let rest: Vec<f32> = vertices
+            .flat_map(|((position, normal), direction)| [*position, *normal, direction])
+            .flatten()
+            .collect();
         let deltas: Vec<f32> =
             mesh.targets.iter().flat_map(|target| target.position_deltas.iter().flatten()).copied().collect();
+        let influences: Vec<_> = mesh
+            .skin
+            .iter()
+            .flat_map(|skin| &skin.influences)
+            .map(|influence| InfluenceLayout { joint: influence.joint, weight: influence.weight })
+            .collect();
         let triangles: Vec<u32> = mesh.triangles.iter().flatten().copied().collect();
         let adjacency = NormalAdjacency::build(mesh);
         let adjacency: Vec<u32> = adjacency.offsets.iter().chain(&adjacency.triangles).copied().collect();
@@ -174,6 +148,9 @@ impl Buffers {
             rest: floats("rest pose", &rest),
             deltas: floats("morph deltas", &deltas),
             weights: gpu::buffer(device, "morph weights", 4 * u64::from(extent.targets)),
+            influences: gpu::buffer_with(device, "influences", BufferUsages::STORAGE, &influences),
+            // One at least: WGSL's array has elements of this size.
+            joints: gpu::buffer(device, "joints", 64 * u64::from(extent.joints.max(1))),
             triangles: gpu::buffer_with(
                 device,
                 "triangles",

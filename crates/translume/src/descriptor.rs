@@ -1,7 +1,8 @@
 //! What a body is made of.
 
+use crate::bounds::WEIGHT_SLACK;
 use crate::{Error, Medium, Method, Profile};
-use translume_mesh::{Atlas, Mesh};
+use translume_mesh::{Atlas, Influence, Mesh, Skin};
 
 /// What a body is made of and how it is computed.
 #[derive(Clone, Copy, Debug)]
@@ -40,8 +41,9 @@ impl<'a> BodyDescriptor<'a> {
         }
     }
 
-    /// Checks everything but the shape. `limit` is the widest texture of the device.
+    /// Checks everything. `limit` is the widest texture of the device.
     pub(crate) fn validate(&self, limit: u32) -> Result<(), Error> {
+        validate_shape(self.mesh, self.atlas)?;
         self.medium.validate()?;
         self.method.validate()?;
         let fail =
@@ -56,4 +58,77 @@ impl<'a> BodyDescriptor<'a> {
         }
         Ok(())
     }
+}
+
+/// Whether mesh and atlas belong together and every index leads somewhere.
+fn validate_shape(mesh: &Mesh, atlas: &Atlas) -> Result<(), Error> {
+    const REPAIR: &str = "pass the mesh through `translume_mesh::repair` first";
+    const REBUILD: &str = "build the atlas from this very mesh";
+    let fail = |problem: String, remedy| Err(Error::Body { mesh: mesh.name.clone(), problem, remedy });
+    let vertices = mesh.positions.len();
+    if mesh.triangles.is_empty() || atlas.texels.is_empty() {
+        return fail("no triangle or no texel, so nothing to light".to_owned(), REPAIR);
+    }
+    if mesh.normals.len() != vertices {
+        return fail(format!("{} normals for {vertices} vertices", mesh.normals.len()), REPAIR);
+    }
+    if let Some(vertex) =
+        (0..vertices).find(|&v| !mesh.positions[v].iter().chain(&mesh.normals[v]).all(|x| x.is_finite()))
+    {
+        return fail(format!("vertex {vertex} is not finite"), REPAIR);
+    }
+    if let Some(triangle) = mesh.triangles.iter().position(|t| t.iter().any(|&v| v as usize >= vertices)) {
+        return fail(format!("triangle {triangle} uses a vertex beyond the {vertices} there are"), REPAIR);
+    }
+    for (k, target) in mesh.targets.iter().enumerate() {
+        if target.position_deltas.len() != vertices
+            || !target.position_deltas.iter().flatten().all(|x| x.is_finite())
+        {
+            return fail(format!("morph target {k} needs {vertices} finite deltas"), REPAIR);
+        }
+    }
+    if let Some(problem) = mesh.skin.as_ref().and_then(|skin| skin_problem(skin, vertices)) {
+        return fail(problem, "re-export the mesh with its skin, or drop the skin");
+    }
+    if atlas.triangles.len() != mesh.triangles.len()
+        || atlas.vertices.iter().any(|v| v.xref as usize >= vertices)
+    {
+        return fail("the atlas was built from another mesh".to_owned(), REBUILD);
+    }
+    if atlas.triangles.iter().flatten().any(|&v| v as usize >= atlas.vertices.len()) {
+        return fail("the atlas uses vertices it does not have".to_owned(), REBUILD);
+    }
+    if atlas.pixels.len() != (atlas.size as usize).pow(2) {
+        return fail(format!("the atlas has {} pixels for {}²", atlas.pixels.len(), atlas.size), REBUILD);
+    }
+    if let Some(k) =
+        atlas.texels.iter().position(|t| t.triangle as usize >= mesh.triangles.len() || !t.area.is_finite())
+    {
+        return fail(format!("texel {k} of the atlas stands on no triangle"), REBUILD);
+    }
+    Ok(())
+}
+
+/// What is wrong with a skin.
+fn skin_problem(skin: &Skin, vertices: usize) -> Option<String> {
+    let Skin { joints, per_vertex, influences } = skin;
+    if *per_vertex == 0 || per_vertex.checked_mul(vertices) != Some(influences.len()) {
+        return Some(format!(
+            "{} influences, {per_vertex} for each of {vertices} vertices",
+            influences.len()
+        ));
+    }
+    if let Some(k) = influences.iter().position(|influence| influence.joint as usize >= *joints) {
+        let vertex = k / per_vertex;
+        return Some(format!(
+            "vertex {vertex} follows joint {}, but there are {joints}",
+            influences[k].joint
+        ));
+    }
+    let whole = |vertex: &[Influence]| {
+        let sum: f32 = vertex.iter().map(|influence| influence.weight).sum();
+        vertex.iter().all(|influence| influence.weight >= 0.0) && (sum - 1.0).abs() <= WEIGHT_SLACK
+    };
+    let vertex = influences.chunks(*per_vertex).position(|vertex| !whole(vertex))?;
+    Some(format!("the shares of the joints in vertex {vertex} are not 0 or more, adding up to 1"))
 }

@@ -6,6 +6,7 @@ use crate::layout::{
 use crate::stages::shadow::{self, View};
 use crate::{Error, Light, light};
 use glam::{Mat4, Vec3};
+use translume_mesh::{Warp, rig};
 
 /// The inputs of one frame.
 #[derive(Clone, Copy, Debug)]
@@ -14,6 +15,8 @@ pub struct Frame<'a> {
     pub model: [[f32; 4]; 4],
     /// The pose.
     pub deformation: Deformation<'a>,
+    /// Twist, bend and inflation of that pose. Finite; angles up to [`Warp::MAX_ANGLE`].
+    pub warp: Warp,
     /// The light.
     pub lighting: Lighting<'a>,
 }
@@ -25,8 +28,22 @@ pub enum Deformation<'a> {
     /// As the mesh was loaded.
     #[default]
     Rest,
-    /// One weight per morph target of the mesh. Any finite number; 0 is the rest pose, 1 the target.
+    /// One weight per morph target of the mesh. Any finite number; 0 is the rest pose, 1 the target. Joints stay at the identity.
     Morph(&'a [f32]),
+    /// Morph targets, then joints.
+    Pose {
+        /// As for [`Morph`](Self::Morph).
+        weights: &'a [f32],
+        /// One matrix per joint of the mesh's skin, from the mesh at rest to model space: column-major, finite, affine (the last row is
+        /// taken to be 0, 0, 0, 1).
+        joints: &'a [[[f32; 4]; 4]],
+    },
+}
+
+impl<'a> From<&'a rig::Pose> for Deformation<'a> {
+    fn from(pose: &'a rig::Pose) -> Self {
+        Self::Pose { weights: &pose.weights, joints: &pose.joints }
+    }
 }
 
 /// Where light comes from.
@@ -43,54 +60,10 @@ impl Default for Frame<'_> {
         Self {
             model: Mat4::IDENTITY.to_cols_array_2d(),
             deformation: Deformation::Rest,
+            warp: Warp::default(),
             lighting: Lighting::Lights(&[]),
         }
     }
-}
-
-/// Axis-aligned boxes of a mesh at rest and at each morph target's full weight, model units.
-#[derive(Clone, Debug)]
-pub(crate) struct PoseBounds {
-    rest: (Vec3, Vec3),
-    targets: Vec<(Vec3, Vec3)>,
-}
-
-impl PoseBounds {
-    pub fn new(mesh: &translume_mesh::Mesh) -> Self {
-        let around = |points: &mut dyn Iterator<Item = Vec3>| {
-            points.fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)))
-        };
-        let rest = around(&mut mesh.positions.iter().copied().map(Vec3::from));
-        let targets = mesh
-            .targets
-            .iter()
-            .map(|target| {
-                let moved = mesh.positions.iter().zip(&target.position_deltas);
-                around(&mut moved.map(|(p, d)| Vec3::from(*p) + Vec3::from(*d)))
-            })
-            .collect();
-        Self { rest, targets }
-    }
-
-    /// Corners of a box around the posed mesh. A pose is (1 − Σw)·rest + Σ w·target, so the same sum of boxes holds it.
-    pub fn corners(&self, weights: &[f32], model: Mat4) -> [Vec3; 8] {
-        let mut low = Vec3::ZERO;
-        let mut high = Vec3::ZERO;
-        let parts = std::iter::once((1.0 - weights.iter().sum::<f32>(), self.rest))
-            .chain(weights.iter().copied().zip(self.targets.iter().copied()));
-        for (weight, (a, b)) in parts {
-            low += (a * weight).min(b * weight);
-            high += (a * weight).max(b * weight);
-        }
-        std::array::from_fn(|k| {
-            let pick = Vec3::new((k & 1) as f32, (k >> 1 & 1) as f32, (k >> 2) as f32);
-            model.transform_point3(low + (high - low) * pick)
-        })
-    }
-}
-
-pub(crate) fn diagonal(corners: &[Vec3; 8]) -> f32 {
-    corners[0].distance(corners[7])
 }
 
 /// Checks what can be checked without the body.
@@ -121,6 +94,21 @@ pub(crate) fn validate_model(model: Mat4) -> Result<(), Error> {
         problem: format!("model matrix {model} cannot be inverted"),
         remedy: "give a finite matrix that keeps three dimensions",
     })
+}
+
+/// Checks that a pose has a place: `corners` of the box around it, mm.
+pub(crate) fn validate_corners(corners: &[Vec3; 8]) -> Result<(), Error> {
+    if corners.iter().all(|corner| corner.is_finite()) {
+        return Ok(());
+    }
+    Err(Error::Frame {
+        problem: "the pose reaches further than a 32-bit number".to_owned(),
+        remedy: "give smaller weights, joints, inflation or model matrix",
+    })
+}
+
+pub(crate) fn diagonal(corners: &[Vec3; 8]) -> f32 {
+    corners[0].distance(corners[7])
 }
 
 /// What the gather needs of a body beside the lights.
@@ -217,39 +205,6 @@ fn ambient_layout(ambient: &crate::AmbientLight, eta: f32) -> AmbientLayout {
 mod tests {
     use super::*;
     use crate::{AmbientLight, DirectionalLight};
-    use translume_mesh::{Mesh, MorphTarget};
-
-    fn mesh() -> Mesh {
-        Mesh {
-            name: "pair".to_owned(),
-            positions: vec![[0.0; 3], [1.0, 2.0, 3.0]],
-            normals: vec![[0.0, 1.0, 0.0]; 2],
-            triangles: vec![],
-            targets: vec![MorphTarget {
-                name: String::new(),
-                position_deltas: vec![[5.0, 0.0, 0.0], [-4.0, 0.0, 0.0]],
-            }],
-            ..Mesh::default()
-        }
-    }
-
-    #[test]
-    fn bounds_hold_every_pose() {
-        let bounds = PoseBounds::new(&mesh());
-        for weight in [-1.0_f32, 0.0, 0.3, 1.0, 2.5] {
-            let corners = bounds.corners(&[weight], Mat4::IDENTITY);
-            let (low, high) = (corners[0], corners[7]);
-            for (p, d) in mesh().positions.iter().zip(&mesh().targets[0].position_deltas) {
-                let posed = Vec3::from(*p) + weight * Vec3::from(*d);
-                assert!(posed.cmpge(low - 1e-5).all() && posed.cmple(high + 1e-5).all(), "{weight}: {posed}");
-            }
-        }
-        assert_eq!(
-            bounds.corners(&[0.0], Mat4::IDENTITY)[7],
-            Vec3::new(1.0, 2.0, 3.0),
-            "the rest box is tight"
-        );
-    }
 
     #[test]
     fn too_many_lights_are_counted() {

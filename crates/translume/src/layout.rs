@@ -14,13 +14,32 @@ pub(crate) const NO_SHADOW: u32 = u32::MAX;
 
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub(crate) struct WarpLayout {
+    pub foot: [f32; 3],
+    pub inflate: f32,
+    pub height: f32,
+    pub per_height: f32,
+    pub twist: f32,
+    pub bend: f32,
+}
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub(crate) struct DeformLayout {
     pub model: [[f32; 4]; 4],
     pub normal: [[f32; 4]; 4],
+    pub warp: WarpLayout,
     pub vertex_count: u32,
     pub target_count: u32,
+    pub influences_per_vertex: u32,
     pub winding: f32,
-    pub padding: u32,
+}
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub(crate) struct InfluenceLayout {
+    pub joint: u32,
+    pub weight: f32,
 }
 
 #[repr(C)]
@@ -182,7 +201,14 @@ mod tests {
 
     #[test]
     fn rust_and_wgsl_agree() {
-        check!(DEFORM, "Deform", DeformLayout, [model, normal, vertex_count, target_count, winding, padding]);
+        check!(
+            DEFORM,
+            "Deform",
+            DeformLayout,
+            [model, normal, warp, vertex_count, target_count, influences_per_vertex, winding]
+        );
+        check!(DEFORM, "Warp", WarpLayout, [foot, inflate, height, per_height, twist, bend]);
+        check!(DEFORM, "Influence", InfluenceLayout, [joint, weight]);
         check!(
             GATHER,
             "Light",

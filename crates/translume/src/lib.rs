@@ -32,6 +32,7 @@
 pub use wgpu;
 
 mod body;
+mod bounds;
 mod buffers;
 mod camera;
 mod descriptor;
@@ -44,6 +45,7 @@ mod kernel_texture;
 mod layout;
 mod light;
 mod medium;
+mod pose;
 mod profile;
 pub mod readback;
 mod stages;

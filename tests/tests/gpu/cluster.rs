@@ -1,6 +1,6 @@
 //! Sums of texels up the tree.
 
-use glam::{DVec3, Mat4};
+use glam::DVec3;
 use translume::{Cluster, DirectionalLight, Light};
 use translume_reference::cluster::{self, Cluster as Twin};
 use translume_tests::{
@@ -9,7 +9,7 @@ use translume_tests::{
 
 fn lit(fixture: &mut Fixture) {
     let sun = Light::Directional(DirectionalLight { to_light: [0.3, 0.7, 0.6], ..Default::default() });
-    let pose = Pose { model: Mat4::IDENTITY, weights: vec![0.2; fixture.model.mesh.targets.len()] };
+    let pose = Pose { weights: vec![0.2; fixture.model.mesh.targets.len()], ..Pose::rest(0) };
     fixture.run(&pose.frame(&[sun]));
 }
 

@@ -3,7 +3,9 @@
 use glam::{Mat4, Vec3};
 use std::sync::Arc;
 use translume::{DirectionalLight, Frame, Light, Lighting, Medium, PointLight};
-use translume_tests::{Fixture, Model, Pose, creature, gpu, sphere};
+use translume_mesh::warp::Axis;
+use translume_mesh::{Skin, Warp};
+use translume_tests::{Fixture, Model, Pose, creature, gpu, limb, sphere};
 
 fn lamp() -> Light {
     Light::Point(PointLight {
@@ -17,7 +19,7 @@ fn lamp() -> Light {
 /// The text names the element, and the next good frame finds nothing changed.
 #[track_caller]
 fn refused(fixture: &mut Fixture, bad: &Frame<'_>, words: &[&str]) {
-    let pose = Pose::rest(1);
+    let pose = Pose { warp: Warp { twist: 0.3, ..Warp::default() }, ..Pose::rest(1) };
     let lights = [lamp()];
     let good = pose.frame(&lights);
     fixture.run(&good);
@@ -50,6 +52,73 @@ fn bad_frames_are_refused_by_name() {
     refused(&mut fixture, &pose(&[0.3]).frame(&[lamp(); 65]), &["65", "64"]);
     let near = Light::Point(PointLight { position: [0.0, 60.0, 60.0], ..Default::default() });
     refused(&mut fixture, &pose(&[0.3]).frame(&[near; 11]), &["66 depth maps", "64"]);
+}
+
+#[test]
+fn bad_joints_and_warps_are_refused_by_name() {
+    let mut fixture = Fixture::new(&limb(), |_| ());
+    let joints = |joints: &[Mat4]| Pose {
+        joints: joints.iter().map(Mat4::to_cols_array_2d).collect(),
+        ..Pose::rest(1)
+    };
+    let warp = |change: fn(&mut Warp)| {
+        let mut pose = Pose::rest(1);
+        change(&mut pose.warp);
+        pose
+    };
+    let lost = Mat4::from_translation(Vec3::new(0.0, f32::NAN, 0.0));
+    let far = Mat4::from_scale(Vec3::splat(3e37));
+    let bad: [(Pose, &[&str]); 9] = [
+        (joints(&[Mat4::IDENTITY; 2]), &["2 joint matrices", "3 joints"]),
+        (joints(&[Mat4::IDENTITY, lost, Mat4::IDENTITY]), &["joint 1", "NaN"]),
+        (joints(&[Mat4::IDENTITY, Mat4::IDENTITY, far]), &["pose", "further"]),
+        (warp(|warp| warp.twist = f32::NAN), &["warp.twist", "NaN"]),
+        (warp(|warp| warp.twist = -1001.0), &["warp.twist", "-1001", "1000"]),
+        (warp(|warp| warp.bend = f32::INFINITY), &["warp.bend", "inf"]),
+        (warp(|warp| warp.inflate = f32::NAN), &["warp.inflate", "NaN"]),
+        (warp(|warp| warp.axis = Some(Axis { foot: [0.0; 3], height: -1.0 })), &["warp.axis", "-1"]),
+        (warp(|warp| warp.axis = Some(Axis { foot: [f32::NAN; 3], height: 1.0 })), &["warp.axis", "NaN"]),
+    ];
+    for (pose, words) in &bad {
+        refused(&mut fixture, &pose.frame(&[lamp()]), words);
+    }
+    // The deformation is already made when the lights are refused.
+    let black_hole = Light::Point(PointLight { intensity: [-1.0; 3], ..Default::default() });
+    refused(&mut fixture, &warp(|warp| warp.bend = 1.0).frame(&[black_hole]), &["light 0"]);
+    let near = Light::Point(PointLight { position: [0.0, 0.0, 60.0], ..Default::default() });
+    refused(&mut fixture, &warp(|warp| warp.bend = 1.0).frame(&[near; 11]), &["66 depth maps"]);
+
+    let mut rigid = Fixture::new(&creature(), |_| ());
+    refused(&mut rigid, &joints(&[Mat4::IDENTITY]).frame(&[]), &["1 joint matrices", "0 joints"]);
+}
+
+#[test]
+fn bad_skins_are_refused_by_name() {
+    let refusal = |change: fn(&mut Skin)| {
+        let mut model = (*limb()).clone();
+        model.mesh.skin.iter_mut().for_each(change);
+        Fixture::try_new(&Arc::new(model), |_| ()).err().map(|error| error.to_string())
+    };
+    assert_eq!(refusal(|_| ()), None);
+    type Case = (fn(&mut Skin), &'static [&'static str]);
+    let cases: [Case; 6] = [
+        (|skin| skin.per_vertex = 0, &["0 for each"]),
+        (|skin| skin.influences.truncate(9), &["9 influences", "2 for each of 642"]),
+        (|skin| skin.influences[7].joint = 3, &["vertex 3", "joint 3", "there are 3"]),
+        (|skin| skin.influences[7].weight = f32::NAN, &["vertex 3", "shares"]),
+        (|skin| skin.influences[7].weight += 0.1, &["vertex 3", "shares"]),
+        (
+            |skin| {
+                skin.influences[6].weight += 1.0;
+                skin.influences[7].weight -= 1.0;
+            },
+            &["vertex 3", "shares"],
+        ),
+    ];
+    for (change, words) in cases {
+        let message = refusal(change).unwrap_or_default();
+        assert!(words.iter().all(|word| message.contains(word)), "[{}] {message}", gpu().adapter_name);
+    }
 }
 
 #[test]

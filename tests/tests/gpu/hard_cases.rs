@@ -99,7 +99,7 @@ fn bounded(row: &Row, model: &Arc<Model>) -> Check {
         (d.medium, d.mm_per_unit) = (row.medium, row.mm_per_unit);
         d.shadow_resolution = 64;
     });
-    fixture.run(&Pose { model: row.model, weights: Vec::new() }.frame(&row.lights));
+    fixture.run(&Pose { model: row.model, ..Pose::rest(0) }.frame(&row.lights));
     let (sources, exitance) = (fixture.sources(), fixture.exitance());
     sane(row.name, &exitance)?;
     sane(row.name, &luminous(&sources))?;

@@ -2,7 +2,8 @@
 
 use glam::{Mat4, Vec3};
 use translume::{Frame, Light, Medium, PointLight, Profile, Stage};
-use translume_tests::{Fixture, Pose, Shot, creature, gpu};
+use translume_mesh::Warp;
+use translume_tests::{Fixture, Pose, Shot, creature, gpu, limb};
 
 fn lamp(x: f32) -> [Light; 1] {
     [Light::Point(PointLight { position: [x, 60.0, 150.0], intensity: [1e4; 3], ..Default::default() })]
@@ -39,6 +40,32 @@ fn a_frame_runs_what_its_inputs_changed() {
     let elsewhere = Pose { model: Mat4::from_translation(Vec3::X), ..melted };
     runs_from(&pending(&mut fixture, &elsewhere.frame(&moved)), Stage::Deform);
     assert_eq!(pending(&mut fixture, &elsewhere.frame(&moved)), []);
+}
+
+#[test]
+fn joints_and_warps_run_everything_once() {
+    let mut fixture = Fixture::new(&limb(), |_| ());
+    let lights = lamp(0.0);
+    let joints = |turn| vec![Mat4::from_rotation_z(turn).to_cols_array_2d(); 3];
+    let bend = |bend| Warp { bend, ..Warp::default() };
+    let poses = [
+        Pose::rest(1),
+        Pose { joints: joints(0.1), ..Pose::rest(1) },
+        Pose { joints: joints(0.2), ..Pose::rest(1) },
+        Pose { joints: joints(0.2), warp: bend(0.1), ..Pose::rest(1) },
+        Pose { joints: joints(0.2), warp: bend(0.2), ..Pose::rest(1) },
+    ];
+    for pose in &poses {
+        runs_from(&pending(&mut fixture, &pose.frame(&lights)), Stage::Deform);
+        assert_eq!(pending(&mut fixture, &pose.frame(&lights)), [], "{pose:?} once more");
+    }
+    runs_from(&pending(&mut fixture, &poses[0].frame(&lights)), Stage::Deform);
+    let at_rest = Pose { joints: joints(0.0), ..Pose::rest(1) };
+    assert_eq!(
+        pending(&mut fixture, &at_rest.frame(&lights)),
+        [],
+        "joints at the identity are the rest pose"
+    );
 }
 
 /// A medium needs the scatter, another index of refraction the gather too, a profile that leaves B alone nothing.

@@ -28,7 +28,9 @@ pub struct AtlasOptions {
     pub padding: u32,
     /// Where charts come from.
     pub charts: ChartSource,
-    /// Whether unwrapped charts are relaxed until every texel holds about the same area of the surface.
+    /// Whether unwrapped charts are relaxed until every texel holds about the same area of the surface. Off by default: a body
+    /// measures the area of every texel, and its error is the same either way (docs/accuracy.md). For schemes that take
+    /// texels to be equal.
     pub equiareal: bool,
 }
 
@@ -47,7 +49,7 @@ pub enum ChartSource {
 
 impl Default for AtlasOptions {
     fn default() -> Self {
-        Self { size: 256, padding: 2, charts: ChartSource::Unwrap, equiareal: true }
+        Self { size: 256, padding: 2, charts: ChartSource::Unwrap, equiareal: false }
     }
 }
 

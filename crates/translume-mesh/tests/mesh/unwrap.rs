@@ -64,7 +64,7 @@ fn progress_is_told_and_can_cancel() {
         stages.lock().unwrap().push(p.stage);
         true
     };
-    Atlas::build(&mesh, &AtlasOptions { size: 64, ..Default::default() }, listen).unwrap();
+    Atlas::build(&mesh, &AtlasOptions { size: 64, equiareal: true, ..Default::default() }, listen).unwrap();
     let mut stages = stages.into_inner().unwrap();
     stages.dedup();
     assert_eq!(
@@ -77,7 +77,9 @@ fn progress_is_told_and_can_cancel() {
             after.fetch_add(usize::from(p.stage == last), Ordering::Relaxed);
             p.stage != last
         };
-        let error = Atlas::build(&mesh, &AtlasOptions { size: 64, ..Default::default() }, stop).unwrap_err();
+        let error =
+            Atlas::build(&mesh, &AtlasOptions { size: 64, equiareal: true, ..Default::default() }, stop)
+                .unwrap_err();
         assert_eq!(error, AtlasError::Cancelled { mesh: "sphere".into() });
         assert_eq!(after.into_inner(), 1, "nothing is reported after {last} was stopped");
     }
@@ -106,6 +108,21 @@ fn what_cannot_be_unwrapped_is_told() {
     }
     let error = refuse(&clean(many), 16, 2);
     assert!(matches!(error, AtlasError::DoesNotFit { size: 16, charts, .. } if charts >= 100), "{error}");
+}
+
+#[test]
+fn evening_out_makes_texels_equal_and_costs_no_chart() {
+    for mesh in [clean(sphere(3)), clean(tetrahedron())] {
+        let options = AtlasOptions { size: 128, equiareal: true, ..Default::default() };
+        let (flattened, even) = (build(&mesh, 128), Atlas::build(&mesh, &options, |_| true).unwrap());
+        assert!(area_error(&even, &mesh) < 1e-5);
+        let (before, after) = (&flattened.report, &even.report);
+        assert!(after.area_cv < 0.01, "twice the relaxation's own goal: {after:?}");
+        assert_eq!((after.charts, after.flipped, after.overlapping_texels), (before.charts, 0, 0));
+        // Outlines move a little, so packing may too.
+        assert!(after.utilisation > before.utilisation - 0.03, "{before:?} {after:?}");
+    }
+    assert!(build(&clean(sphere(3)), 128).report.area_cv > 0.01, "or there is nothing to show");
 }
 
 /// A sphere with the texture coordinates of an unwrapping, as an artist might have stored them.

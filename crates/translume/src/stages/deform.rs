@@ -1,56 +1,76 @@
-//! Deform: rest pose and morph targets → positions in mm and unit normals, per mesh vertex.
+//! Deform: rest pose, morph targets, joints and warp → positions in mm and unit normals, per mesh vertex.
 //!
-//! reads  rest pose, deltas, weights, triangle adjacency      writes  positions, normals
-//! twin   `translume_reference::deform`                       WGSL    `deform.wgsl`
+//! reads  rest pose, deltas, weights, influences, joints, triangle adjacency      writes  positions, normals
+//! twin   `translume_reference::deform`                                           WGSL    `deform.wgsl`, `normals.wgsl`
 
 use crate::buffers::Buffers;
 use crate::gpu::{self, READ, UNIFORM, WRITE};
 
 pub(crate) struct Deform {
-    layout: wgpu::BindGroupLayout,
-    morph: wgpu::ComputePipeline,
+    pose_layout: wgpu::BindGroupLayout,
+    normals_layout: wgpu::BindGroupLayout,
+    rigid: wgpu::ComputePipeline,
+    skinned: wgpu::ComputePipeline,
     recompute_normals: wgpu::ComputePipeline,
+}
+
+/// What the two passes read and write for one body.
+pub(crate) struct DeformGroups {
+    pose: wgpu::BindGroup,
+    normals: wgpu::BindGroup,
 }
 
 impl Deform {
     pub fn new(device: &wgpu::Device) -> Self {
-        let types = [UNIFORM, READ, READ, READ, READ, READ, WRITE, WRITE];
-        let layout = gpu::layout(device, "deform", wgpu::ShaderStages::COMPUTE, &types);
-        let module = gpu::module(device, translume_shaders::DEFORM);
+        let layout = |label, types: &[_]| gpu::layout(device, label, wgpu::ShaderStages::COMPUTE, types);
+        let pose_layout = layout("deform", &[UNIFORM, READ, READ, READ, READ, READ, WRITE, WRITE]);
+        let normals_layout = layout("normals", &[UNIFORM, READ, READ, READ, WRITE]);
+        let pose = gpu::module(device, translume_shaders::DEFORM);
+        let normals = gpu::module(device, translume_shaders::NORMALS);
+        let specialised =
+            |skinned| gpu::specialised_pipeline(device, &pose_layout, &pose, "pose", &[("SKINNED", skinned)]);
         Self {
-            morph: gpu::compute_pipeline(device, &layout, &module, "morph"),
-            recompute_normals: gpu::compute_pipeline(device, &layout, &module, "recompute_normals"),
-            layout,
+            rigid: specialised(0.0),
+            skinned: specialised(1.0),
+            recompute_normals: gpu::compute_pipeline(device, &normals_layout, &normals, "recompute_normals"),
+            pose_layout,
+            normals_layout,
         }
     }
 
-    pub fn bind(&self, device: &wgpu::Device, buffers: &Buffers) -> wgpu::BindGroup {
-        let resources = [
-            &buffers.deform_uniform,
-            &buffers.rest,
-            &buffers.deltas,
-            &buffers.weights,
-            &buffers.triangles,
-            &buffers.adjacency,
-            &buffers.positions,
-            &buffers.normals,
-        ];
-        gpu::bind(device, "deform", &self.layout, &resources.map(wgpu::Buffer::as_entire_binding))
+    pub fn bind(&self, device: &wgpu::Device, buffers: &Buffers) -> DeformGroups {
+        let bind = |label, layout, buffers: &[&wgpu::Buffer]| {
+            let resources: Vec<_> = buffers.iter().map(|buffer| buffer.as_entire_binding()).collect();
+            gpu::bind(device, label, layout, &resources)
+        };
+        let Buffers { deform_uniform, positions, normals, triangles, adjacency, .. } = buffers;
+        let Buffers { rest, deltas, weights, influences, joints, .. } = buffers;
+        let pose = [deform_uniform, rest, deltas, weights, influences, joints, positions, normals];
+        DeformGroups {
+            pose: bind("deform", &self.pose_layout, &pose),
+            normals: bind(
+                "normals",
+                &self.normals_layout,
+                &[deform_uniform, triangles, adjacency, positions, normals],
+            ),
+        }
     }
 
     /// A body that deforms gets its normals from the deformed triangles; a rigid one keeps those of its file.
     pub fn encode(
         &self,
         pass: &mut wgpu::ComputePass<'_>,
-        group: &wgpu::BindGroup,
+        groups: &DeformGroups,
         vertices: u32,
+        skinned: bool,
         deforms: bool,
     ) {
-        pass.set_bind_group(0, group, &[]);
-        pass.set_pipeline(&self.morph);
+        pass.set_pipeline(if skinned { &self.skinned } else { &self.rigid });
+        pass.set_bind_group(0, &groups.pose, &[]);
         gpu::dispatch(pass, vertices);
         if deforms {
             pass.set_pipeline(&self.recompute_normals);
+            pass.set_bind_group(0, &groups.normals, &[]);
             gpu::dispatch(pass, vertices);
         }
     }
