@@ -19,18 +19,6 @@ pub enum SphericalError {
     /// The mesh is not clean.
     #[error(transparent)]
     NotClean(#[from] RepairError),
-    /// Texture coordinates or skin do not belong to the mesh.
-    #[error("{mesh}: {entries} {list}, where {wanted} are needed; give one for each, or none")]
-    Length {
-        /// The mesh's name.
-        mesh: String,
-        /// `triangles' texture coordinates` or `skin influences`.
-        list: &'static str,
-        /// How many there are.
-        entries: usize,
-        /// How many are needed.
-        wanted: usize,
-    },
     /// Two corners of a triangle are at the same position.
     #[error("{mesh}: triangle {triangle} (from 0) has no area; repair the mesh first")]
     NoArea {

@@ -102,6 +102,15 @@ impl Random {
         self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         ((self.0 >> 33) % n as u64) as usize
     }
+
+    /// Between −1 and 1.
+    pub fn signed(&mut self) -> f32 {
+        self.below(1 << 24) as f32 / (1 << 23) as f32 - 1.0
+    }
+
+    pub fn point(&mut self, size: f32) -> [f32; 3] {
+        std::array::from_fn(|_| size * self.signed())
+    }
 }
 
 /// A folder that goes away with the test.

@@ -3,33 +3,7 @@
 use translume_mesh::{Atlas, AtlasOptions, AtlasReport, Mesh};
 
 use crate::atlas::area_error;
-use crate::fixtures::{clean, sphere, tetrahedron};
-
-/// A generator good enough to shake vertices (Vigna 2015, splitmix64).
-struct Dice(u64);
-
-impl Dice {
-    fn roll(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    }
-
-    /// Between −1 and 1.
-    fn signed(&mut self) -> f32 {
-        (self.roll() >> 40) as f32 / (1 << 23) as f32 - 1.0
-    }
-
-    fn point(&mut self, size: f32) -> [f32; 3] {
-        std::array::from_fn(|_| size * self.signed())
-    }
-
-    fn below(&mut self, n: usize) -> usize {
-        (self.roll() % n as u64) as usize
-    }
-}
+use crate::fixtures::{Random, clean, sphere, tetrahedron};
 
 /// A sheet of quads over a grid, joined at its ends where asked.
 fn sheet(columns: u32, rows: u32, closed: [bool; 2], place: impl Fn(f32, f32) -> [f32; 3]) -> Mesh {
@@ -50,7 +24,7 @@ fn sheet(columns: u32, rows: u32, closed: [bool; 2], place: impl Fn(f32, f32) ->
 
 fn random_mesh(seed: u64) -> Mesh {
     use std::f32::consts::TAU;
-    let mut dice = Dice(seed);
+    let mut dice = Random(seed);
     let [a, b, c] = dice.point(1.0);
     let mut mesh = match seed % 10 {
         // Smooth and lumpy.

@@ -113,8 +113,8 @@ fn what_cannot_be_unwrapped_is_told() {
 #[test]
 fn evening_out_makes_texels_equal_and_costs_no_chart() {
     for mesh in [clean(sphere(3)), clean(tetrahedron())] {
-        let options = AtlasOptions { size: 128, equiareal: true, ..Default::default() };
-        let (flattened, even) = (build(&mesh, 128), Atlas::build(&mesh, &options, |_| true).unwrap());
+        let options = AtlasOptions { size: 512, equiareal: true, ..Default::default() };
+        let (flattened, even) = (build(&mesh, 512), Atlas::build(&mesh, &options, |_| true).unwrap());
         assert!(area_error(&even, &mesh) < 1e-5);
         let (before, after) = (&flattened.report, &even.report);
         assert!(after.area_cv < 0.01, "twice the relaxation's own goal: {after:?}");
