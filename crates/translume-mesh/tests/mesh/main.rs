@@ -23,6 +23,8 @@ mod normals;
 #[cfg(test)]
 mod order;
 #[cfg(test)]
+mod properties;
+#[cfg(test)]
 mod repair;
 #[cfg(test)]
 mod repair_options;
