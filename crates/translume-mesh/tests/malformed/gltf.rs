@@ -9,12 +9,12 @@ use crate::obj::noise;
 pub fn buffer() -> Vec<u8> {
     let floats = |numbers: &[f32]| numbers.iter().flat_map(|x| x.to_le_bytes()).collect::<Vec<u8>>();
     let shorts = |numbers: &[u16]| numbers.iter().flat_map(|x| x.to_le_bytes()).collect::<Vec<u8>>();
-    let identity = |k: usize| if k % 5 == 0 { 1.0 } else { 0.0 };
+    let identity = |k: usize| if k.is_multiple_of(5) { 1.0 } else { 0.0 };
     let matrices: Vec<f32> = (0..32).map(|k| identity(k % 16)).collect();
     [
         floats(&[1.0, 1.0, 1.0, 1.0, -1.0, -1.0, -1.0, 1.0, -1.0, -1.0, -1.0, 1.0]), // 0: positions
         shorts(&[0, 1, 2, 0, 2, 3, 0, 3, 1, 1, 3, 2]),                               // 1: indices
-        vec![0, 1, 0, 0].repeat(4),                                                  // 2: joints
+        [0, 1, 0, 0].repeat(4),                                                      // 2: joints
         floats(&[0.5, 0.5, 0.0, 0.0].repeat(4)),                                     // 3: weights
         floats(&[0.25; 12]),                                                         // 4: morph deltas
         shorts(&[1, 3]),                                                             // 5: sparse indices
