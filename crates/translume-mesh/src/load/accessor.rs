@@ -91,6 +91,9 @@ pub(super) fn inverse_binds(
     if accessor.count() < joints {
         check_count(accessor, (joints, "joints"))?;
     }
+    if accessor.view().is_some() {
+        count(accessor, buffers, "bind matrices")?;
+    }
     elements(accessor, buffers, joints, |bytes| number(bytes, DataType::F32, false))
 }
 

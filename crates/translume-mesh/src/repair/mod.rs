@@ -89,7 +89,9 @@ pub fn repair_with(mut mesh: Mesh, options: &RepairOptions) -> Result<(Mesh, Rep
     while mend(&mut mesh, &welded, options.orient, &mut report) {}
     if let Some(max_edges) = options.fill_holes {
         report.filled_holes = fill_holes(&mut mesh, max_edges);
-        report.count_edges(&Edges::new(&mesh.triangles, &weld(&mesh.positions)));
+        // A surface that is closed only now shows only now where its outside is.
+        let welded = weld(&mesh.positions);
+        while mend(&mut mesh, &welded, options.orient, &mut report) {}
     }
     report.dropped_vertices = vertices::drop_unused(&mut mesh);
     report.computed_normals = vertices::complete_normals(&mut mesh);

@@ -28,6 +28,8 @@ mod normals;
 #[cfg(test)]
 mod order;
 #[cfg(test)]
+mod properties;
+#[cfg(test)]
 #[cfg(feature = "unwrap")]
 mod random;
 #[cfg(test)]

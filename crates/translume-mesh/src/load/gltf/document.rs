@@ -29,6 +29,7 @@ pub(super) fn parse(bytes: &[u8]) -> Result<(gltf::Document, Option<Vec<u8>>), F
     let json = glb.as_ref().map_or(bytes, |glb| &glb.json);
     check_size(json)?;
     let mut root = root(json)?;
+    check_version(&root)?;
     check_positions(&root)?;
     check_channels(&root)?;
     // The crate's own list of extensions does not know them.
@@ -93,6 +94,16 @@ fn without_pointers(json: &[u8]) -> Option<Value> {
         }
     }
     found.then_some(json)
+}
+
+/// A file may say that readers of version 2.0 cannot read it (specification, section 3.2).
+fn check_version(root: &Root) -> Result<(), String> {
+    match root.asset.min_version.as_deref() {
+        Some(version) if version != "2.0" => {
+            Err(format!("it needs a reader of glTF {version}, and this one reads 2.0"))
+        }
+        _ => Ok(()),
+    }
 }
 
 fn check_positions(root: &Root) -> Result<(), Fault> {

@@ -103,6 +103,9 @@ impl Statements {
             let vertex = index("vertex", self.positions.len())?.ok_or_else(malformed)?;
             let uv = index("texture coordinate", self.uvs.len())?;
             let normal = index("normal", self.normals.len())?;
+            if indices.next().is_some() {
+                return Err(malformed());
+            }
             self.corners.push(Corner { vertex, uv, normal });
         }
         self.ends.push(self.corners.len());
