@@ -10,6 +10,7 @@ Examples:
   translume render creature --medium wax --frames 48 -o morph.png      an animated PNG
   translume render fox.glb --animation Walk --frames 24 -o walk.png    another
   translume render spot.obj --twist 90 --bend 40 -o candy.png
+  translume render bunny.obj --into egg --frames 48 -o egg.png         whatever is closed melts
   translume render --scene scene.json -o scene.exr                     linear radiance, full float
   translume inspect bunny.obj --json
   translume inspect creature teapot bunny.obj --table                  a line for each
@@ -88,6 +89,9 @@ pub struct Render {
     /// Brightness of a PNG, in stops.
     #[arg(long, value_name = "EV", default_value_t = 0.0, allow_negative_numbers = true)]
     pub exposure: f32,
+    /// Melt a closed model into an egg or a sphere: it takes the place of the model's own morph targets and skin.
+    #[arg(long, value_name = "SHAPE", conflicts_with = "scene", value_parser = ["egg", "sphere"])]
+    pub into: Option<String>,
     /// Weight of each morph target, separated by commas.
     #[arg(long, value_name = "W,…", value_delimiter = ',', allow_negative_numbers = true)]
     pub morph: Vec<f32>,

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 use translume_mesh::load::LoadError;
 use translume_mesh::rig::PoseError;
+use translume_mesh::spherical::SphericalError;
 use translume_mesh::{AtlasError, RepairError};
 
 #[derive(Debug, thiserror::Error)]
@@ -15,6 +16,8 @@ pub enum Error {
     Pose(#[from] PoseError),
     #[error(transparent)]
     Atlas(#[from] AtlasError),
+    #[error(transparent)]
+    Spherical(#[from] SphericalError),
     #[error(transparent)]
     Translume(#[from] translume::Error),
     #[error("{}: {problem}", path.display())]

@@ -7,6 +7,7 @@ use glam::{Mat4, Vec3};
 use std::f32::consts::FRAC_PI_2;
 use std::path::Path;
 use translume_mesh::rig::{self, Animation, Pose, Rig};
+use translume_mesh::spherical::{EggOptions, to_egg};
 use translume_mesh::{Atlas, AtlasOptions, ChartSource, Mesh, RepairReport, builtin, load};
 
 /// A mesh, what had to be done to it, and what moves it.
@@ -49,6 +50,25 @@ impl Model {
     pub fn diagonal(&self) -> Result<f32, Error> {
         let (low, high) = self.bounds()?;
         Ok(Vec3::from(low).distance(high.into()))
+    }
+
+    /// The model with one morph target, an egg or, if asked, a sphere; its own targets, skin and animations are gone.
+    pub fn into_round(self, sphere: bool) -> Result<Self, Error> {
+        let bar = progress::bar("lay");
+        let mesh = Mesh { targets: Vec::new(), skin: None, ..self.mesh };
+        let options = if sphere { EggOptions::SPHERE } else { EggOptions::default() };
+        let laid = to_egg(&mesh, &options, |step| progress::show(&bar, &step))?;
+        bar.finish_and_clear();
+        let figures = &laid.report;
+        progress::tell(&format!(
+            "{}: laid around {} in {:.2} s, {} holes filled, {} triangles flipped",
+            mesh.name,
+            if sphere { "a sphere" } else { "an egg" },
+            figures.seconds,
+            figures.holes_filled,
+            figures.flipped
+        ));
+        Ok(Self::new(laid.mesh, self.repairs, None))
     }
 
     /// Turns a model whose z axis points up, as CAD programs and scanners write them.

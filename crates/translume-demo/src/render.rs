@@ -156,6 +156,9 @@ fn from_model(name: &str, arguments: &Render) -> Result<Setup, Error> {
     if arguments.up == "z" {
         model.turn_z_up();
     }
+    if let Some(shape) = &arguments.into {
+        model = model.into_round(shape == "sphere")?;
+    }
     let mm_per_unit = match arguments.mm_per_unit {
         Some(mm_per_unit) => mm_per_unit,
         None => ASSUMED_DIAGONAL_MM / model.diagonal()?,
