@@ -3,7 +3,7 @@
 //! | module | what it does |
 //! | --- | --- |
 //! | [`mesh`] | the [`Mesh`] everything speaks: positions, normals, triangles, morph targets |
-//! | [`load`] | OBJ, glTF and GLB files, with errors that name the element |
+//! | [`load`] | OBJ, PLY, glTF and GLB files, with errors that name the element |
 //! | [`repair`] | drops what cannot carry light, counts what it dropped |
 //! | [`normals`] | vertex normals at rest, and which triangles make them up on any pose |
 //! | [`atlas`] | charts and packing (by `uvunwrap`), the one-time raster into texels, gutters, texel order |
@@ -31,4 +31,4 @@ pub use atlas::AtlasOptions;
 pub use atlas::{Atlas, AtlasError, AtlasReport, AtlasVertex, Texel};
 pub use mesh::{Influence, Mesh, MorphTarget, Skin};
 pub use progress::Progress;
-pub use repair::{RepairError, RepairReport};
+pub use repair::{RepairError, RepairOptions, RepairReport};

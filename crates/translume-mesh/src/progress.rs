@@ -4,7 +4,7 @@
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Progress {
     /// What is going on. An atlas: `segmenting`, `flattening`, `packing`, `splitting`, `rasterising` or `ordering`;
-    /// a sphere or an egg: `coarsening`, `laying` or `checking`.
+    /// a file: `reading`, `parsing` or `repairing`; a sphere or an egg: `coarsening`, `laying` or `checking`.
     pub stage: &'static str,
     /// Units of work finished in this stage.
     pub done: usize,

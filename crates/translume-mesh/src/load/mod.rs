@@ -1,4 +1,4 @@
-//! Mesh files: OBJ, glTF and GLB.
+//! Mesh files: OBJ, PLY, glTF and GLB.
 //!
 //! A loader never panics, whatever the file holds, and reserves no memory that the file's own length does not
 //! justify. Its errors name the file, the element and a way out.
@@ -6,16 +6,21 @@
 mod accessor;
 mod buffers;
 mod gltf;
+mod listener;
 mod obj;
+mod ply;
+mod polygon;
 
 use std::path::Path;
 
 use crate::mesh::Mesh;
+use crate::progress::Progress;
 use crate::repair::{RepairError, RepairReport, repair};
 use crate::rig::Rig;
+use listener::Listener;
 
 /// Extensions that [`load`] reads, in lower case.
-pub const EXTENSIONS: [&str; 3] = ["obj", "gltf", "glb"];
+pub const EXTENSIONS: [&str; 4] = ["obj", "ply", "gltf", "glb"];
 
 /// A clean mesh from a file.
 #[derive(Clone, Debug, PartialEq)]
@@ -25,7 +30,7 @@ pub struct Loaded {
     pub mesh: Mesh,
     /// What had to be repaired.
     pub repairs: RepairReport,
-    /// What a unit of the file is, where the format says so: 1 for glTF (its specification, section 3.4), `None` for OBJ.
+    /// What a unit of the file is, where the format says so: 1 for glTF (its specification, section 3.4), `None` for OBJ and PLY.
     pub metres_per_unit: Option<f32>,
     /// What moves it, where the file has animations or skins.
     pub rig: Option<Rig>,
@@ -44,7 +49,7 @@ pub enum LoadError {
         reason: String,
     },
     /// The extension is none that the loader knows.
-    #[error("{file}: its extension is none of .obj, .gltf, .glb; convert it to one of them")]
+    #[error("{file}: its extension is none of .obj, .ply, .gltf, .glb; convert it to one of them")]
     UnknownExtension {
         /// The file.
         file: String,
@@ -57,7 +62,7 @@ pub enum LoadError {
         /// What was found, or missed.
         reason: String,
     },
-    /// A line of an OBJ file cannot be understood.
+    /// A line of an OBJ file, or of the header of a PLY file, cannot be understood.
     #[error("{file}: line {line}: {reason}; re-export the file or correct the line")]
     Line {
         /// The file.
@@ -67,7 +72,7 @@ pub enum LoadError {
         /// What is wrong with it.
         reason: String,
     },
-    /// A face of an OBJ file names a vertex or normal that does not exist.
+    /// A face of an OBJ file names a vertex, texture coordinate or normal that does not exist.
     #[error(
         "{file}: face {face} uses {element} {index}, but there are {count}; re-export the file or repair its indices"
     )]
@@ -76,7 +81,7 @@ pub enum LoadError {
         file: String,
         /// The face, counted from 1 in the order of the file.
         face: usize,
-        /// `vertex` or `normal`.
+        /// `vertex`, `texture coordinate` or `normal`.
         element: &'static str,
         /// The index as the file has it: from 1, or negative and counted backwards.
         index: i64,
@@ -92,6 +97,35 @@ pub enum LoadError {
         vertex: usize,
         /// Where it is said to be.
         position: [f32; 3],
+    },
+    /// A row of a PLY file is cut off, holds something that is no number, or contradicts the file.
+    #[error("{file}: {element}: {reason}; re-export the file")]
+    Ply {
+        /// The file.
+        file: String,
+        /// The row, such as `face 12 (from 0)`, or the element.
+        element: String,
+        /// What is wrong with it.
+        reason: String,
+    },
+    /// A face has more corners than can be cut into triangles in reasonable time, and is not convex.
+    #[error(
+        "{file}: face {face} has {corners} corners, above {} for one that is not convex; export it as triangles",
+        polygon::MAX_CORNERS
+    )]
+    Polygon {
+        /// The file.
+        file: String,
+        /// The face, counted from 1 in the order of the file.
+        face: usize,
+        /// Number of its corners.
+        corners: usize,
+    },
+    /// The progress callback returned `false`.
+    #[error("{file}: loading was cancelled")]
+    Cancelled {
+        /// The file.
+        file: String,
     },
     /// An element of a glTF file contradicts the file or the format.
     #[error("{file}: {element}: {reason}; check the file with a glTF validator and re-export it")]
@@ -110,31 +144,41 @@ pub enum LoadError {
 
 /// Reads a mesh and repairs it. The extension, in any case, decides the format.
 ///
-/// OBJ: faces of any arity become fans (right for convex ones), objects and groups merge, vertices split where normals
-/// differ, texture coordinates and materials are ignored. glTF and GLB: the nodes of the default scene, with their
-/// transforms, merge into one mesh; morph targets merge by index; skinned meshes keep their bind pose. Target names stay
-/// empty: glTF keeps them in application data.
+/// OBJ: objects and groups merge, vertices split where normals differ, missing normals are computed, and texture
+/// coordinates are kept where every face has them; materials are ignored. Faces of more than three corners become fans
+/// where such a fan lies inside them, as in convex ones, and else lose one ear after the other. PLY, in text or binary:
+/// vertices with x, y, z and, if there, nx, ny, nz, and faces, which are cut as those of OBJ; other elements and properties are
+/// skipped. glTF and GLB: the nodes
+/// of the default scene, with their transforms, merge into one mesh; morph targets merge by index; skinned meshes keep
+/// their bind pose. Target names stay empty: glTF keeps them in application data.
 ///
 /// # Errors
 /// [`LoadError`], which names the file and the element.
 pub fn load(path: &Path) -> Result<Loaded, LoadError> {
+    load_with_progress(path, |_| true)
+}
+
+/// [`load`] for files that take a while. `progress` hears of the stages `reading` and `parsing`, in bytes, and
+/// `repairing`; when it returns `false` loading ends.
+///
+/// # Errors
+/// [`LoadError::Cancelled`] when `progress` returned `false`, and those of [`load`].
+pub fn load_with_progress(path: &Path, progress: impl Fn(Progress) -> bool) -> Result<Loaded, LoadError> {
     let extension = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase());
     let file = path.display().to_string();
+    let listener = Listener { file: &file, progress: &progress };
     let (mut mesh, metres_per_unit) = match extension.as_deref() {
-        Some("obj") => (obj::read(&file, &read_file(path)?)?, None),
-        Some("gltf" | "glb") => (gltf::read(path, &read_file(path)?)?, Some(1.0)),
+        Some("obj") => (obj::read(listener.read(path)?, &listener)?, None),
+        Some("ply") => (ply::read(&listener.read(path)?, &listener)?, None),
+        Some("gltf" | "glb") => (gltf::read(path, &listener.read(path)?)?, Some(1.0)),
         _ => return Err(LoadError::UnknownExtension { file }),
     };
-    mesh.name = path.file_name().map_or(file, |name| name.to_string_lossy().into_owned());
+    listener.tell("repairing", 0, None)?;
+    mesh.name = path.file_name().map_or_else(|| file.clone(), |name| name.to_string_lossy().into_owned());
     let (mesh, repairs) = repair(mesh)?;
     Ok(Loaded { mesh, repairs, metres_per_unit, rig: None })
 }
 
 fn read_file(path: &Path) -> Result<Vec<u8>, LoadError> {
-    let error = |reason: String| LoadError::Read { file: path.display().to_string(), reason };
-    // Devices and pipes may never end.
-    if !std::fs::metadata(path).map_err(|e| error(e.to_string()))?.is_file() {
-        return Err(error("it is not a regular file".into()));
-    }
-    std::fs::read(path).map_err(|e| error(e.to_string()))
+    Listener { file: &path.display().to_string(), progress: &|_| true }.read(path)
 }

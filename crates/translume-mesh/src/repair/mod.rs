@@ -1,109 +1,160 @@
-//! Makes a mesh clean, or says why it cannot be: drops what cannot carry light and counts what it dropped.
+//! Makes a mesh clean, or says why it cannot be: mends what has one right answer, drops what cannot carry light, and counts both.
 
+pub(crate) mod check;
 mod cover;
 pub(crate) mod edges;
 mod error;
 mod holes;
+mod nesting;
+mod orient;
 mod patch;
 mod report;
+mod vertices;
 
-use std::collections::HashSet;
-
-use glam::{DVec3, Vec3};
+use glam::DVec3;
 
 pub use error::RepairError;
 pub use holes::fill_holes;
 pub use report::RepairReport;
 
-use crate::mesh::Mesh;
-use crate::normals::smooth_normals;
-use crate::weld::weld;
 use edges::{Across, Edges};
-use error::DIAGONALS;
+use orient::Orientation;
+
+use crate::mesh::Mesh;
+use crate::weld::weld;
 
 /// A triangle whose height over its longest edge is below this share of the mesh's diagonal has no area. Positions
 /// are stored to about 6e-8 of the diagonal, so the direction of such a triangle is noise, and `uvunwrap` lays none
 /// out below 1e-6.
 const MIN_HEIGHT: f64 = 2e-6;
 
-/// Makes a mesh clean: see [`Mesh`]. Order and winding of what remains are kept.
+/// Distances over which vertices may be joined, as shares of the mesh's diagonal: from what f32 resolves to what an eye does.
+const WELD_DISTANCES: std::ops::RangeInclusive<f32> = 1e-8..=1e-2;
+
+/// What [`repair_with`] shall do beyond dropping what cannot carry light.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RepairOptions {
+    /// Join vertices that lie within this share of the mesh's diagonal, 1e-8 to 1e-2, or, if it is 0, at one position:
+    /// the first of them gives the position, and those that also agree in normal, morph deltas and skin influences
+    /// become one vertex. Split normals stay split, so hard edges stay hard. `None`, the default, keeps every used
+    /// vertex, and with it the numbering of a caller's own vertex buffers.
+    pub weld_distance: Option<f32>,
+    /// Make neighbouring triangles face the same side, and closed surfaces face outwards. On by default.
+    pub orient: bool,
+    /// Close holes of up to this many edges, see [`fill_holes`]. `None`, the default, closes none.
+    pub fill_holes: Option<usize>,
+}
+
+impl Default for RepairOptions {
+    fn default() -> Self {
+        Self { weld_distance: None, orient: true, fill_holes: None }
+    }
+}
+
+/// [`repair_with`] the default options.
 ///
-/// Triangles without an area, repeated triangles and unused vertices are dropped; normals that are missing, zero or not
-/// finite are computed ([`smooth_normals`]), the others are brought to unit length. Edges are counted after joining
-/// vertices at the same position; they are not changed.
+/// # Errors
+/// Those of [`repair_with`].
+pub fn repair(mesh: Mesh) -> Result<(Mesh, RepairReport), RepairError> {
+    repair_with(mesh, &RepairOptions::default())
+}
+
+/// Makes a mesh clean: see [`Mesh`]. The order of what remains is kept, new vertices and triangles follow after it.
+///
+/// Always: triangles without an area, repeated triangles and unused vertices are dropped; normals that are missing, zero
+/// or not finite are computed ([`smooth_normals`](crate::normals::smooth_normals)), the others are brought to unit length.
+/// A triangle that repeats another from the other side makes a sheet with two sides and stays.
+///
+/// [`RepairOptions::orient`]: in each piece of the surface, joined by edges of two triangles, the fewer triangles are turned
+/// over to face the side of the others. A closed piece whose triangles face inwards is turned outside out, together with
+/// what lies inside it; one that lies inside another is otherwise left as it is, for it may be a cavity. A piece with only one
+/// side, such as a Möbius strip, is left alone and counted. Normals that then point away from their triangles are negated.
+///
+/// All this, and the counts of edges, is after joining vertices at the same position. Repairing a second time with the same
+/// options changes nothing but the last bit of some normals.
 ///
 /// # Errors
 /// [`RepairError`], where dropping would change what the artist meant: it names the element.
-pub fn repair(mut mesh: Mesh) -> Result<(Mesh, RepairReport), RepairError> {
-    check(&mesh)?;
+pub fn repair_with(mut mesh: Mesh, options: &RepairOptions) -> Result<(Mesh, RepairReport), RepairError> {
+    check::check(&mesh)?;
     let mut report = RepairReport::default();
-    let welded = weld(&mesh.positions);
-    drop_triangles(&mut mesh, &welded, &mut report);
-    if mesh.triangles.is_empty() {
-        let triangles = report.dropped_degenerate;
-        return Err(RepairError::NoArea { mesh: mesh.name, triangles });
+    if let Some(share) = options.weld_distance {
+        snap(&mut mesh, share)?;
     }
-    count_edges(&mesh.triangles, &welded, &mut report);
-    drop_vertices(&mut mesh, &mut report);
-    complete_normals(&mut mesh, &mut report);
+    report.dropped_degenerate = drop_flat(&mut mesh);
+    if mesh.triangles.is_empty() {
+        return Err(RepairError::NoArea { mesh: mesh.name, triangles: report.dropped_degenerate });
+    }
+    let welded = weld(&mesh.positions);
+    while mend(&mut mesh, &welded, options.orient, &mut report) {}
+    if let Some(max_edges) = options.fill_holes {
+        report.filled_holes = fill_holes(&mut mesh, max_edges);
+        report.count_edges(&Edges::new(&mesh.triangles, &weld(&mesh.positions)));
+    }
+    report.dropped_vertices = vertices::drop_unused(&mut mesh);
+    report.computed_normals = vertices::complete_normals(&mut mesh);
+    if options.weld_distance.is_some() {
+        report.welded_vertices = vertices::join_equal(&mut mesh);
+        vertices::drop_unused(&mut mesh);
+    }
     Ok((mesh, report))
 }
 
-pub(crate) fn check(mesh: &Mesh) -> Result<(), RepairError> {
-    let name = || mesh.name.clone();
-    let count = mesh.positions.len();
-    let mut used = vec![false; count];
-    for (triangle, corners) in mesh.triangles.iter().enumerate() {
-        for &vertex in corners {
-            *used.get_mut(vertex as usize).ok_or_else(|| RepairError::Index {
-                mesh: name(),
-                triangle,
-                vertex,
-                count,
-            })? = true;
+fn snap(mesh: &mut Mesh, share: f32) -> Result<(), RepairError> {
+    if share != 0.0 {
+        if !WELD_DISTANCES.contains(&share) {
+            return Err(RepairError::WeldDistance { mesh: mesh.name.clone(), share });
         }
-    }
-    let broken = |points: &[[f32; 3]]| {
-        let mut used = used.iter().zip(points);
-        used.position(|(&used, p)| used && !p.iter().all(|x| x.is_finite()))
-    };
-    if let Some(vertex) = broken(&mesh.positions) {
-        return Err(RepairError::Vertex { mesh: name(), vertex, position: mesh.positions[vertex] });
-    }
-    for (target, deltas) in mesh.targets.iter().map(|t| &t.position_deltas).enumerate() {
-        if deltas.len() != count {
-            return Err(RepairError::TargetCount { mesh: name(), target, deltas: deltas.len(), count });
-        }
-        if let Some(vertex) = broken(deltas) {
-            return Err(RepairError::TargetDelta { mesh: name(), target, vertex, delta: deltas[vertex] });
-        }
-    }
-    if !mesh.normals.is_empty() && mesh.normals.len() != count {
-        return Err(RepairError::NormalCount { mesh: name(), normals: mesh.normals.len(), count });
-    }
-    // A mesh without extent has no area either, and that is the clearer message.
-    let diagonal = mesh.diagonal();
-    if diagonal != 0.0 && !DIAGONALS.contains(&diagonal) {
-        return Err(RepairError::Scale { mesh: name(), diagonal });
+        let distance = f64::from(share) * f64::from(mesh.diagonal());
+        vertices::snap(&mut mesh.positions, distance);
     }
     Ok(())
 }
 
-fn drop_triangles(mesh: &mut Mesh, welded: &[u32], report: &mut RepairReport) {
+fn drop_flat(mesh: &mut Mesh) -> usize {
     let min_height = MIN_HEIGHT * f64::from(mesh.diagonal());
-    let positions = &mesh.positions;
-    let mut seen = HashSet::with_capacity(mesh.triangles.len());
-    let keep = |triangle: &[u32; 3]| {
-        let flat =
-            cover::height(triangle.map(|v| DVec3::from(positions[v as usize].map(f64::from)))) <= min_height;
-        let repeated = !flat && !seen.insert(rotated(triangle.map(|v| welded[v as usize])));
-        report.dropped_degenerate += usize::from(flat);
-        report.dropped_duplicate += usize::from(repeated);
-        !flat && !repeated
+    let has_area =
+        |t: usize| cover::height(mesh.corners(t).map(|p| DVec3::from(p.map(f64::from)))) > min_height;
+    let kept: Vec<bool> = (0..mesh.triangles.len()).map(has_area).collect();
+    keep_triangles(mesh, &kept)
+}
+
+/// Drops repeated triangles, or else orients. Either may make room for the other: returns whether something changed.
+fn mend(mesh: &mut Mesh, welded: &[u32], orient: bool, report: &mut RepairReport) -> bool {
+    let edges = Edges::new(&mesh.triangles, welded);
+    report.count_edges(&edges);
+    let (kept, orientation) = match unrepeated(&edges) {
+        None if orient => (None, Orientation::of(mesh, &edges)),
+        kept => (kept, Orientation::default()),
     };
-    let kept: Vec<bool> = mesh.triangles.iter().map(keep).collect();
-    retain(&mut mesh.triangles, &kept);
-    retain(&mut mesh.uvs, &kept);
+    let dropped = kept.map_or(0, |kept| keep_triangles(mesh, &kept));
+    orientation.apply(mesh);
+    report.dropped_duplicate += dropped;
+    report.flipped_triangles += orientation.flipped.len();
+    report.unorientable_pieces = orientation.unorientable;
+    dropped > 0 || !orientation.flipped.is_empty()
+}
+
+/// Marks all but the repetitions of triangles that have the same corners and side; `None` where there are none.
+fn unrepeated(edges: &Edges<'_>) -> Option<Vec<bool>> {
+    let mut kept = None;
+    for group in edges.groups().filter(|group| group.len() > 1) {
+        let apex = |half| edges.half_edges.to(edges::next(half));
+        let mut triangles: Vec<_> =
+            group.iter().map(|&(_, half)| (edges.half_edges.from(half), apex(half), half / 3)).collect();
+        triangles.sort_unstable();
+        for pair in triangles.windows(2).filter(|pair| (pair[0].0, pair[0].1) == (pair[1].0, pair[1].1)) {
+            kept.get_or_insert_with(|| vec![true; edges.across.len() / 3])[pair[1].2 as usize] = false;
+        }
+    }
+    kept
+}
+
+/// Drops triangles that are not marked; returns how many.
+fn keep_triangles(mesh: &mut Mesh, kept: &[bool]) -> usize {
+    retain(&mut mesh.triangles, kept);
+    retain(&mut mesh.uvs, kept);
+    kept.len() - mesh.triangles.len()
 }
 
 /// Keeps the entries that are marked; a list without entries stays so.
@@ -112,56 +163,11 @@ fn retain<T>(list: &mut Vec<T>, kept: &[bool]) {
     list.retain(|_| kept.next() == Some(&true));
 }
 
-/// The same triangle beginning with its smallest vertex.
-fn rotated([a, b, c]: [u32; 3]) -> [u32; 3] {
-    if a <= b && a <= c {
-        [a, b, c]
-    } else if b <= c {
-        [b, c, a]
-    } else {
-        [c, a, b]
-    }
-}
-
-fn count_edges(triangles: &[[u32; 3]], welded: &[u32], report: &mut RepairReport) {
-    let edges = Edges::new(triangles, welded);
-    let count = |which: fn(&Across) -> bool| edges.across.iter().filter(|a| which(a)).count();
-    report.boundary_edges = count(|a| *a == Across::Boundary);
-    report.inconsistent_edges = count(|a| matches!(a, Across::Opposite(_))) / 2;
-    report.non_manifold_edges = edges.groups().filter(|group| group.len() > 2).count();
-}
-
-fn drop_vertices(mesh: &mut Mesh, report: &mut RepairReport) {
-    let mut used = vec![false; mesh.positions.len()];
-    mesh.triangles.iter().flatten().for_each(|&v| used[v as usize] = true);
-    report.dropped_vertices = used.iter().filter(|&&used| !used).count();
-    if report.dropped_vertices == 0 {
-        return;
-    }
-    let before = used.iter().scan(0, |kept, &used| {
-        let number = *kept;
-        *kept += u32::from(used);
-        Some(number)
-    });
-    let renumbered: Vec<u32> = before.collect();
-    mesh.triangles.iter_mut().flatten().for_each(|v| *v = renumbered[*v as usize]);
-    retain(&mut mesh.positions, &used);
-    retain(&mut mesh.normals, &used);
-    mesh.targets.iter_mut().for_each(|target| retain(&mut target.position_deltas, &used));
-    if let Some(skin) = &mut mesh.skin {
-        let used: Vec<bool> =
-            used.iter().flat_map(|&used| std::iter::repeat_n(used, skin.per_vertex)).collect();
-        retain(&mut skin.influences, &used);
-    }
-}
-
-fn complete_normals(mesh: &mut Mesh, report: &mut RepairReport) {
-    mesh.normals.resize(mesh.positions.len(), [0.0; 3]);
-    let units: Vec<Option<Vec3>> = mesh.normals.iter().map(|&n| Vec3::from(n).try_normalize()).collect();
-    report.computed_normals = units.contains(&None);
-    let computed =
-        if report.computed_normals { smooth_normals(&mesh.positions, &mesh.triangles) } else { Vec::new() };
-    for (v, unit) in units.into_iter().enumerate() {
-        mesh.normals[v] = unit.map_or_else(|| computed[v], |n| n.to_array());
+impl RepairReport {
+    fn count_edges(&mut self, edges: &Edges<'_>) {
+        let count = |which: fn(&Across) -> bool| edges.across.iter().filter(|across| which(across)).count();
+        self.boundary_edges = count(|across| *across == Across::Boundary);
+        self.inconsistent_edges = count(|across| matches!(across, Across::Opposite(_))) / 2;
+        self.non_manifold_edges = edges.groups().filter(|group| group.len() > 2).count();
     }
 }

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-/// What [`repair`](super::repair) changed, and what it saw and left alone.
+/// What [`repair_with`](super::repair_with) changed, and what it saw and left alone.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct RepairReport {
@@ -12,12 +12,20 @@ pub struct RepairReport {
     pub dropped_duplicate: usize,
     /// Vertices that no remaining triangle uses, dropped.
     pub dropped_vertices: usize,
+    /// Vertices joined with one that carries the same.
+    pub welded_vertices: usize,
+    /// Triangles turned over to face the side of their neighbours, or outwards.
+    pub flipped_triangles: usize,
+    /// Holes closed.
+    pub filled_holes: usize,
     /// Edges with one triangle, kept: the surface has holes.
     pub boundary_edges: usize,
     /// Edges with more than two triangles, kept.
     pub non_manifold_edges: usize,
     /// Edges whose two triangles face opposite sides, kept.
     pub inconsistent_edges: usize,
+    /// Pieces of the surface that have only one side, left as they are.
+    pub unorientable_pieces: usize,
     /// Whether some or all normals were missing, zero or not finite, and were computed.
     pub computed_normals: bool,
 }
@@ -36,9 +44,13 @@ impl fmt::Display for RepairReport {
             (self.dropped_degenerate, "triangles without area dropped"),
             (self.dropped_duplicate, "repeated triangles dropped"),
             (self.dropped_vertices, "unused vertices dropped"),
+            (self.welded_vertices, "vertices welded"),
+            (self.flipped_triangles, "triangles turned over"),
+            (self.filled_holes, "holes closed"),
             (self.boundary_edges, "boundary edges"),
             (self.non_manifold_edges, "non-manifold edges"),
             (self.inconsistent_edges, "edges between triangles of opposite sides"),
+            (self.unorientable_pieces, "one-sided pieces"),
         ];
         let mut parts: Vec<_> =
             counts.iter().filter(|(n, _)| *n > 0).map(|(n, what)| format!("{n} {what}")).collect();

@@ -19,18 +19,6 @@ pub enum SphericalError {
     /// The mesh is not clean.
     #[error(transparent)]
     NotClean(#[from] RepairError),
-    /// Texture coordinates or skin do not belong to the mesh.
-    #[error("{mesh}: {entries} {list}, where {wanted} are needed; give one for each, or none")]
-    Length {
-        /// The mesh's name.
-        mesh: String,
-        /// `triangles' texture coordinates` or `skin influences`.
-        list: &'static str,
-        /// How many there are.
-        entries: usize,
-        /// How many are needed.
-        wanted: usize,
-    },
     /// Two corners of a triangle are at the same position.
     #[error("{mesh}: triangle {triangle} (from 0) has no area; repair the mesh first")]
     NoArea {
@@ -64,7 +52,7 @@ pub enum SphericalError {
     },
     /// Two triangles face opposite sides.
     #[error(
-        "{mesh}: the triangles at the edge from {from:?} to {to:?} face opposite sides; make all normals face outwards"
+        "{mesh}: the triangles at the edge from {from:?} to {to:?} face opposite sides; repair the mesh first, so that all face outwards"
     )]
     Orientation {
         /// The mesh's name.
@@ -115,7 +103,7 @@ pub enum SphericalError {
         genus: usize,
     },
     /// The triangles face inwards.
-    #[error("{mesh}: its triangles face inwards; reverse their winding")]
+    #[error("{mesh}: its triangles face inwards; repair the mesh first, or reverse their winding")]
     InsideOut {
         /// The mesh's name.
         mesh: String,

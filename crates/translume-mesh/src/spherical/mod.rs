@@ -43,7 +43,8 @@ pub use figures::SphericalReport;
 
 use crate::mesh::{Mesh, MorphTarget};
 use crate::progress::{Progress, Stopwatch};
-use crate::repair::{check, fill_holes};
+use crate::repair::check::check;
+use crate::repair::fill_holes;
 use cover::Cover;
 use laid::settle;
 use ovoid::Ovoid;
@@ -136,7 +137,6 @@ fn lay(
     let start = Stopwatch::start();
     check_options(options)?;
     check(mesh)?;
-    check_lengths(mesh)?;
     let mut mesh = mesh.clone();
     let holes_filled = fill_holes(&mut mesh, usize::MAX);
     let surface = Surface::new(&mesh)?;
@@ -172,29 +172,6 @@ fn check_options(options: &EggOptions) -> Result<(), SphericalError> {
         _ if !slendernesses.contains(&slenderness) => wrong("slenderness", slenderness, "0.25..=4"),
         _ if !tapers.contains(&taper) => wrong("taper", taper, "-0.5..=0.5"),
         _ => Ok(()),
-    }
-}
-
-/// Filling holes copies what vertices and triangles carry.
-fn check_lengths(mesh: &Mesh) -> Result<(), SphericalError> {
-    let skin = mesh.skin.as_ref();
-    let lists = [
-        (
-            "triangles' texture coordinates",
-            mesh.uvs.len(),
-            if mesh.uvs.is_empty() { 0 } else { mesh.triangles.len() },
-        ),
-        (
-            "skin influences",
-            skin.map_or(0, |skin| skin.influences.len()),
-            skin.map_or(0, |skin| mesh.positions.len().saturating_mul(skin.per_vertex)),
-        ),
-    ];
-    match lists.into_iter().find(|(_, entries, wanted)| entries != wanted) {
-        Some((list, entries, wanted)) => {
-            Err(SphericalError::Length { mesh: mesh.name.clone(), list, entries, wanted })
-        }
-        None => Ok(()),
     }
 }
 

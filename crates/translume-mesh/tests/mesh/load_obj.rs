@@ -1,7 +1,9 @@
-use translume_mesh::Mesh;
-use translume_mesh::load::{LoadError, Loaded, load};
+use std::cell::RefCell;
 
-use crate::fixtures::Folder;
+use translume_mesh::load::{LoadError, Loaded, load, load_with_progress};
+use translume_mesh::{Mesh, Progress};
+
+use crate::fixtures::{Folder, area};
 
 fn read(text: impl AsRef<[u8]>) -> Result<Loaded, LoadError> {
     Folder::new().load("model.obj", text)
@@ -31,7 +33,7 @@ fn the_extension_is_read_in_any_case() {
     assert_eq!(load(&folder.write("A.OBJ", TETRAHEDRON)).unwrap().mesh.triangles.len(), 4);
     for name in ["a.stl", "a"] {
         let error = load(&folder.write(name, TETRAHEDRON)).unwrap_err().to_string();
-        assert!(error.contains(name) && error.contains(".obj, .gltf, .glb"), "{error}");
+        assert!(error.contains(name) && error.contains(".obj, .ply, .gltf, .glb"), "{error}");
     }
 }
 
@@ -51,6 +53,68 @@ fn polygons_become_fans() {
     let loaded = read(text).unwrap();
     assert_eq!(loaded.mesh.triangles, [[0, 1, 2], [0, 2, 3], [0, 3, 4]]);
     assert_eq!(loaded.repairs.boundary_edges, 5);
+}
+
+#[test]
+fn concave_polygons_lose_ears_until_none_is_left() {
+    // An arrowhead whose fan around the first corner would cover the notch.
+    let loaded = read("v 2 0 0\nv 0 2 0\nv 0 0 0\nv -2 -2 0\nf 1 2 3 4\n").unwrap();
+    assert_eq!(loaded.mesh.triangles.len(), 2);
+    assert!((area(&loaded.mesh) - 4.0).abs() < 1e-6, "{}", area(&loaded.mesh));
+    let fan = read("v 2 0 0\nv 0 2 0\nv 0 0 0\nv -2 -2 0\nf 4 1 2\nf 4 2 3\n").unwrap();
+    assert!(area(&fan.mesh) > 5.0, "the check notices the wrong fan");
+}
+
+#[test]
+fn texture_coordinates_are_kept_where_every_face_has_them() {
+    let square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0 9\nvt 1 0.75\nvt 0.5 # v is 0\n";
+    let mesh = read(format!("{square}f 1/1 2/2 3/3 4/4\n")).unwrap().mesh;
+    // Upwards in the file, downwards here.
+    let corners = [[0.0, 1.0], [1.0, 1.0], [1.0, 0.25], [0.5, 1.0]];
+    assert_eq!(mesh.uvs, [[0, 1, 2], [0, 2, 3]].map(|t| t.map(|k: usize| corners[k])));
+    assert_eq!(mesh.positions.len(), 4, "a seam splits no vertex");
+    let relative = read(format!("{square}f 1/-4 2/-3 3/-2 4/-1\n")).unwrap().mesh;
+    assert_eq!(relative.uvs, mesh.uvs);
+    for faces in ["f 1/1 2/2 3/3\nf 1 3 4\n", "f 1/1 2/2 3/3 4\n", "f 1/1/ 2/2/ 3//\n"] {
+        assert!(read(format!("{square}{faces}")).unwrap().mesh.uvs.is_empty(), "{faces}");
+    }
+    let error = refuse(format!("{square}f 1/1 2/2 3/5\n"));
+    assert!(error.contains("face 1 uses texture coordinate 5, but there are 4"), "{error}");
+    let error = refuse(format!("{square}vt nan 0\nf 1/1 2/2 3/5\n"));
+    assert!(error.contains("triangle 0 (from 0) has the texture coordinate [NaN, 1.0]"), "{error}");
+    let error = refuse("v 0 0 0\nvt x\n");
+    assert!(error.contains("line 2: texture coordinate 1 has the coordinate \"x\""), "{error}");
+}
+
+#[test]
+fn missing_normals_are_computed_and_the_others_kept() {
+    let loaded = read("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nvn 1 0 1\nf 1//1 2//1 3//1\nf 2 4 3\n").unwrap();
+    assert!(loaded.repairs.computed_normals);
+    let [with, without] =
+        [0, 1].map(|t: usize| loaded.mesh.triangles[t].map(|v| loaded.mesh.normals[v as usize]));
+    let half = 0.5_f32.sqrt();
+    assert_eq!((with, without), ([[half, 0.0, half]; 3], [[0.0, 0.0, 1.0]; 3]));
+}
+
+#[test]
+fn progress_is_told_in_order_and_can_cancel() {
+    let folder = Folder::new();
+    let path = folder.write("model.obj", TETRAHEDRON);
+    let told = RefCell::new(Vec::new());
+    let listen = |p: Progress| {
+        told.borrow_mut().push(p);
+        true
+    };
+    assert_eq!(load_with_progress(&path, listen).unwrap(), load(&path).unwrap());
+    let told = told.into_inner();
+    let mut stages: Vec<_> = told.iter().map(|p| p.stage).collect();
+    stages.dedup();
+    assert_eq!(stages, ["reading", "parsing", "repairing"]);
+    assert!(told.iter().all(|p| p.total.is_none_or(|total| p.done <= total)), "{told:?}");
+    for stage in stages {
+        let error = load_with_progress(&path, |p| p.stage != stage).unwrap_err();
+        assert_eq!(error, LoadError::Cancelled { file: path.display().to_string() });
+    }
 }
 
 #[test]

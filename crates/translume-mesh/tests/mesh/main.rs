@@ -13,6 +13,9 @@ mod load_gltf;
 #[cfg(feature = "load")]
 mod load_obj;
 #[cfg(test)]
+#[cfg(feature = "load")]
+mod load_ply;
+#[cfg(test)]
 #[cfg(all(feature = "load", feature = "unwrap"))]
 mod models;
 #[cfg(test)]
@@ -21,6 +24,8 @@ mod normals;
 mod order;
 #[cfg(test)]
 mod repair;
+#[cfg(test)]
+mod repair_options;
 #[cfg(test)]
 mod spherical;
 #[cfg(test)]

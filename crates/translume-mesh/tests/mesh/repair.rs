@@ -1,4 +1,4 @@
-use translume_mesh::repair::{RepairError, RepairReport, repair};
+use translume_mesh::repair::{RepairError, RepairOptions, RepairReport, repair, repair_with};
 use translume_mesh::{Mesh, MorphTarget};
 
 use crate::fixtures::{cube, sphere, tetrahedron};
@@ -66,7 +66,10 @@ fn edges_are_counted() {
     assert_eq!(counts(open).boundary_edges, 4);
     let mut flipped = cube();
     flipped.triangles[0].swap(1, 2);
-    assert_eq!(counts(flipped).inconsistent_edges, 3);
+    let as_it_is = RepairOptions { orient: false, ..RepairOptions::default() };
+    assert_eq!(repair_with(flipped.clone(), &as_it_is).unwrap().1.inconsistent_edges, 3);
+    let oriented = counts(flipped);
+    assert_eq!((oriented.inconsistent_edges, oriented.flipped_triangles), (0, 1));
     let mut split = cube();
     split.positions.push(split.positions[0]);
     split.triangles[0][0] = 8;
