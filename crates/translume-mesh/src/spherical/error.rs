@@ -52,7 +52,7 @@ pub enum SphericalError {
     },
     /// Two triangles face opposite sides.
     #[error(
-        "{mesh}: the triangles at the edge from {from:?} to {to:?} face opposite sides; make all normals face outwards"
+        "{mesh}: the triangles at the edge from {from:?} to {to:?} face opposite sides; repair the mesh first, so that all face outwards"
     )]
     Orientation {
         /// The mesh's name.
@@ -103,7 +103,7 @@ pub enum SphericalError {
         genus: usize,
     },
     /// The triangles face inwards.
-    #[error("{mesh}: its triangles face inwards; reverse their winding")]
+    #[error("{mesh}: its triangles face inwards; repair the mesh first, or reverse their winding")]
     InsideOut {
         /// The mesh's name.
         mesh: String,
