@@ -30,7 +30,8 @@ pub struct Loaded {
     pub mesh: Mesh,
     /// What had to be repaired.
     pub repairs: RepairReport,
-    /// What a unit of the file is, where the format says so: 1 for glTF (its specification, section 3.4), `None` for OBJ and PLY.
+    /// What a unit of the file is, where the format says so: 1 for glTF (its specification, section 3.4), `None` for OBJ and
+    /// PLY.
     pub metres_per_unit: Option<f32>,
     /// What moves it, where the file has animations or skins.
     pub rig: Option<Rig>,
@@ -146,11 +147,15 @@ pub enum LoadError {
 ///
 /// OBJ: objects and groups merge, vertices split where normals differ, missing normals are computed, and texture
 /// coordinates are kept where every face has them; materials are ignored. Faces of more than three corners become fans
-/// where such a fan lies inside them, as in convex ones, and else lose one ear after the other. PLY, in text or binary:
-/// vertices with x, y, z and, if there, nx, ny, nz, and faces, which are cut as those of OBJ; other elements and properties are
-/// skipped. glTF and GLB: the nodes
-/// of the default scene, with their transforms, merge into one mesh; morph targets merge by index; skinned meshes keep
-/// their bind pose. Target names stay empty: glTF keeps them in application data.
+/// where such a fan lies inside them, as in convex ones, and else lose one ear after the other.
+///
+/// PLY, in text or binary: vertices with x, y, z and, if there, nx, ny, nz, and faces, which are cut as those of OBJ; other
+/// elements and properties are skipped.
+///
+/// glTF and GLB: the nodes of the default scene, with their transforms, merge into one mesh; morph targets merge by index;
+/// skinned meshes keep their bind pose. Target names stay empty: glTF keeps them in application data.
+///
+/// Repair takes its defaults; [`repair_with`](crate::repair::repair_with) the mesh again to weld it or to close its holes.
 ///
 /// # Errors
 /// [`LoadError`], which names the file and the element.
