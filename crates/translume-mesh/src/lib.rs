@@ -4,7 +4,7 @@
 //! | --- | --- |
 //! | [`mesh`] | the [`Mesh`] everything speaks: positions, normals, triangles, morph targets |
 //! | [`load`] | OBJ, PLY, glTF and GLB files, with errors that name the element |
-//! | [`repair`] | drops what cannot carry light, counts what it dropped |
+//! | [`repair`] | drops what cannot carry light, orients, welds, closes holes, and counts it all |
 //! | [`normals`] | vertex normals at rest, and which triangles make them up on any pose |
 //! | [`atlas`] | charts and packing (by `uvunwrap`), the one-time raster into texels, gutters, texel order |
 //! | [`spherical`] | a closed surface without handles laid around a sphere or an egg, as a morph target |

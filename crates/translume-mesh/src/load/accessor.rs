@@ -91,9 +91,6 @@ pub(super) fn inverse_binds(
     if accessor.count() < joints {
         check_count(accessor, (joints, "joints"))?;
     }
-    if accessor.view().is_some() {
-        count(accessor, buffers, "bind matrices")?;
-    }
     elements(accessor, buffers, joints, |bytes| number(bytes, DataType::F32, false))
 }
 
@@ -139,8 +136,9 @@ fn elements<T: Copy + Default, const N: usize>(
     };
     let mut read: Vec<[T; N]> = match accessor.view() {
         Some(view) => {
-            let elements = Elements::new(buffers, &view, accessor.offset(), accessor.size(), count)?;
-            elements.iter().map(decode).collect()
+            let elements =
+                Elements::new(buffers, &view, accessor.offset(), accessor.size(), accessor.count())?;
+            elements.iter().take(count).map(decode).collect()
         }
         None => vec![[T::default(); N]; count],
     };

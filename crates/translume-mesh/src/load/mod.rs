@@ -31,7 +31,8 @@ pub struct Loaded {
     pub mesh: Mesh,
     /// What had to be repaired.
     pub repairs: RepairReport,
-    /// What a unit of the file is, where the format says so: 1 for glTF (its specification, section 3.4), `None` for OBJ and PLY.
+    /// What a unit of the file is, where the format says so: 1 for glTF (its specification, section 3.4), `None` for OBJ and
+    /// PLY.
     pub metres_per_unit: Option<f32>,
     /// What moves it, where the file has animations or skins; without joints, nodes and animations where it has nothing but
     /// morph targets with default weights other than 0.
@@ -182,6 +183,8 @@ pub enum LoadError {
 ///
 /// Draco, Meshopt and other compressed geometry is refused. A document may use the same data again and again, but to no
 /// more than 192 MB, or 24 bytes for each of its own.
+///
+/// Repair takes its defaults; [`repair_with`](crate::repair::repair_with) the mesh again to weld it or to close its holes.
 ///
 /// # Errors
 /// [`LoadError`], which names the file and the element.

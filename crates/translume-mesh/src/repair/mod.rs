@@ -140,7 +140,11 @@ fn mend(mesh: &mut Mesh, welded: &[u32], orient: bool, report: &mut RepairReport
 /// Marks all but the repetitions of triangles that have the same corners and side; `None` where there are none.
 fn unrepeated(edges: &Edges<'_>) -> Option<Vec<bool>> {
     let mut kept = None;
-    for group in edges.groups().filter(|group| group.len() > 1) {
+    // Two triangles that walk an edge in opposite ways are no repetitions, and most edges have just those.
+    let suspect = |group: &&[(u32, u32)]| {
+        matches!(edges.across[group[0].1 as usize], Across::Opposite(_) | Across::Crowd)
+    };
+    for group in edges.groups().filter(suspect) {
         let apex = |half| edges.half_edges.to(edges::next(half));
         let mut triangles: Vec<_> =
             group.iter().map(|&(_, half)| (edges.half_edges.from(half), apex(half), half / 3)).collect();

@@ -28,7 +28,8 @@ fn real_models_load_and_unwrap() {
         let loaded = load(&name).unwrap();
         let name = loaded.mesh.name.as_str();
         // Half of them with charts evened out.
-        let options = AtlasOptions { size: 256, equiareal: name.len() % 2 == 0, ..Default::default() };
+        let options =
+            AtlasOptions { size: 256, equiareal: name.len().is_multiple_of(2), ..Default::default() };
         let atlas = Atlas::build(&loaded.mesh, &options, |_| true).unwrap();
         let error = area_error(&atlas, &loaded.mesh);
         println!("{name}: {}; {:?}", loaded.repairs, atlas.report);

@@ -96,14 +96,16 @@ fn without_pointers(json: &[u8]) -> Option<Value> {
     found.then_some(json)
 }
 
-/// A file may say that readers of version 2.0 cannot read it (specification, section 3.2).
-fn check_version(root: &Root) -> Result<(), String> {
-    match root.asset.min_version.as_deref() {
-        Some(version) if version != "2.0" => {
-            Err(format!("it needs a reader of glTF {version}, and this one reads 2.0"))
-        }
-        _ => Ok(()),
+/// Specification, section 3.2: a later minor version may be read as 2.0 unless it says which it needs.
+fn check_version(root: &Root) -> Result<(), Fault> {
+    let needed = root.asset.min_version.as_deref();
+    let readable =
+        needed.map_or(root.asset.version.split('.').next() == Some("2"), |version| version == "2.0");
+    if readable {
+        return Ok(());
     }
+    let needed = needed.unwrap_or(&root.asset.version);
+    Err(Fault::at("asset", format!("it needs glTF {needed}, and 2.0 is what is read")))
 }
 
 fn check_positions(root: &Root) -> Result<(), Fault> {
