@@ -81,14 +81,13 @@ impl Inspected {
         let (mesh, flattened, even) = (&self.model.mesh, &self.flattened, &self.even);
         let (low, high) = self.model.bounds()?;
         let diagonal = self.model.diagonal()?;
-        let animations = self.animations();
         let lines = [
             ("model", mesh.name.clone()),
             ("vertices", mesh.positions.len().to_string()),
             ("triangles", mesh.triangles.len().to_string()),
             ("morph targets", mesh.targets.len().to_string()),
             ("joints", self.model.rig.joints.len().to_string()),
-            ("animations", if animations.is_empty() { "none".to_owned() } else { animations.join(", ") }),
+            ("animations", self.model.animations()),
             ("bounds", format!("{low:?} to {high:?}, diagonal {diagonal:.4}")),
             ("repairs", self.model.repairs.to_string()),
             (
