@@ -50,7 +50,7 @@ pub fn run(arguments: &Inspect) -> Result<(), Error> {
         ("triangles", mesh.triangles.len().to_string()),
         ("morph targets", mesh.targets.len().to_string()),
         ("joints", model.rig.joints.len().to_string()),
-        ("animations", if animations.is_empty() { "none".to_owned() } else { animations.join(", ") }),
+        ("animations", model.animations()),
         ("bounds", format!("{low:?} to {high:?}, diagonal {diagonal:.4}")),
         ("repairs", repairs.to_string()),
         (

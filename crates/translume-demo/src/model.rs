@@ -50,6 +50,14 @@ impl Model {
         Ok(Vec3::from(low).distance(high.into()))
     }
 
+    /// Numbers and names of the animations, to choose from.
+    pub fn animations(&self) -> String {
+        let animations = self.rig.animations.iter().enumerate();
+        let name = |(k, Animation { name, .. }): (usize, &Animation)| format!("{k} {name}").trim().to_owned();
+        let names: Vec<_> = animations.map(name).collect();
+        if names.is_empty() { "no animations".to_owned() } else { names.join(", ") }
+    }
+
     /// Turns a model whose z axis points up, as CAD programs and scanners write them.
     pub fn turn_z_up(&mut self) {
         let Mesh { positions, normals, targets, .. } = &mut self.mesh;

@@ -147,17 +147,11 @@ fn clip<'a>(model: &'a Model, wish: &Wish) -> Result<Option<Clip<'a>>, Error> {
             .or_else(|| animations.get(name.parse::<usize>().ok()?)),
     };
     let Some(animation) = animation else {
-        let option = if wish.animation.is_some() { "--animation" } else { "--time" };
-        if animations.is_empty() {
-            return fail(option, format!("{} has no animations", model.mesh.name));
-        }
-        let known: Vec<_> = animations.iter().enumerate().map(|(k, a)| format!("{k} {}", a.name)).collect();
-        let known = known.iter().map(|name| name.trim()).collect::<Vec<_>>().join(", ");
-        let asked = wish.animation.as_deref().unwrap_or_default();
-        return fail(
-            option,
-            format!("no animation of {} is called \"{asked}\"; it has {known}", model.mesh.name),
-        );
+        let (option, problem) = match &wish.animation {
+            Some(name) => ("--animation", format!("nothing is called \"{name}\"")),
+            None => ("--time", "there is nothing to play".to_owned()),
+        };
+        return fail(option, format!("{problem}; {} has {}", model.mesh.name, model.animations()));
     };
     let start = wish.time.unwrap_or(0.0);
     if !(0.0..=animation.duration).contains(&start) {

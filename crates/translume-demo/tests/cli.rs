@@ -207,16 +207,100 @@ fn a_morph_becomes_an_animation() {
     let arguments =
         ["render", &mesh, "--frames", "3", "--size", "16", "--atlas", "32", "-o", path.to_str().unwrap()];
     assert!(translume(&arguments).status.success());
-    let mut reader =
-        png::Decoder::new(std::io::BufReader::new(std::fs::File::open(&path).unwrap())).read_info().unwrap();
-    assert_eq!(reader.info().animation_control().unwrap().num_frames, 3);
-    let mut frames = Vec::new();
-    for _ in 0..3 {
+    let (frames, seconds) = read_png(&path);
+    assert_eq!((frames.len(), seconds), (3, 417.0 / 10_000.0));
+    assert!(frames[0] != frames[1] && frames[1] != frames[2], "something moves");
+}
+
+/// Bytes of every frame, and how long the last is shown.
+fn read_png(path: &Path) -> (Vec<Vec<u8>>, f32) {
+    let file = std::io::BufReader::new(std::fs::File::open(path).unwrap());
+    let mut reader = png::Decoder::new(file).read_info().unwrap();
+    let count = reader.info().animation_control().map_or(1, |control| control.num_frames);
+    let frame = |_| {
         let mut buffer = vec![0; reader.output_buffer_size().unwrap()];
         reader.next_frame(&mut buffer).unwrap();
-        frames.push(buffer);
+        buffer
+    };
+    let frames = (0..count).map(frame).collect();
+    let delay = reader.info().frame_control().map_or((0, 1), |frame| (frame.delay_num, frame.delay_den));
+    (frames, f32::from(delay.0) / f32::from(delay.1))
+}
+
+/// A tetrahedron that hops by its own height within a second, and lands again in the next.
+fn hopper(desk: &Desk) -> String {
+    let floats = [
+        0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, // positions
+        0.0, 1.0, 2.0, // times
+        0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, // translations
+    ];
+    let bytes = floats.iter().flat_map(|x: &f32| x.to_le_bytes());
+    let indices = [0, 2, 1, 0, 1, 3, 1, 2, 3, 0, 3, 2];
+    desk.file("hopper.bin", bytes.chain(indices).collect::<Vec<u8>>());
+    desk.file(
+        "hopper.gltf",
+        r#"{ "asset": { "version": "2.0" }, "scene": 0, "scenes": [{ "nodes": [0] }], "nodes": [{ "mesh": 0 }],
+             "meshes": [{ "primitives": [{ "attributes": { "POSITION": 0 }, "indices": 1 }] }],
+             "animations": [{ "name": "Hop", "channels": [{ "sampler": 0, "target": { "node": 0, "path": "translation" } }],
+                              "samplers": [{ "input": 2, "output": 3 }] }],
+             "buffers": [{ "uri": "hopper.bin", "byteLength": 108 }],
+             "bufferViews": [{ "buffer": 0, "byteLength": 48 }, { "buffer": 0, "byteOffset": 96, "byteLength": 12 },
+                             { "buffer": 0, "byteOffset": 48, "byteLength": 12 }, { "buffer": 0, "byteOffset": 60, "byteLength": 36 }],
+             "accessors": [
+               { "bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 1] },
+               { "bufferView": 1, "componentType": 5121, "count": 12, "type": "SCALAR" },
+               { "bufferView": 2, "componentType": 5126, "count": 3, "type": "SCALAR", "min": [0], "max": [2] },
+               { "bufferView": 3, "componentType": 5126, "count": 3, "type": "VEC3" }] }"#,
+    )
+}
+
+#[test]
+fn an_animation_plays_and_the_camera_sees_it_all() {
+    let desk = Desk::new();
+    let hopper = hopper(&desk);
+    let path = desk.path("hop.png");
+    let take = |arguments: &[&str]| {
+        let mut all =
+            vec!["render", hopper.as_str(), "--size", "32", "--atlas", "32", "-o", path.to_str().unwrap()];
+        all.extend_from_slice(arguments);
+        let output = translume(&all);
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        read_png(&path)
+    };
+    let (frames, seconds) = take(&["--animation", "Hop", "--frames", "4"]);
+    assert_eq!((frames.len(), seconds), (4, 0.5));
+    assert!(frames[0] != frames[1] && frames[1] != frames[2]);
+    // Half way up it passes the same place as half way down.
+    assert_eq!(frames[1], frames[3]);
+    let lit = |frame: &[u8]| frame.chunks(3).filter(|pixel| pixel[1] > 100).count();
+    let (low, high) = (lit(&frames[0]), lit(&frames[2]));
+    assert!(low.abs_diff(high) < low / 3, "as much of it is seen below as above: {low}, {high}");
+    let still = |arguments| take(arguments).0.remove(0);
+    assert_eq!(
+        still(&["--time", "0.5"]),
+        still(&["--animation", "0", "--time", "1.5"]),
+        "a number is a name"
+    );
+    let plain = still(&["--time", "0"]);
+    for warp in &[["--twist", "90"], ["--bend", "-30"], ["--inflate", "0.1"]] {
+        assert_ne!(still(warp), plain, "{warp:?}");
     }
-    assert!(frames[0] != frames[1] && frames[1] != frames[2], "something moves");
+}
+
+#[test]
+fn animations_that_cannot_be_are_named() {
+    let desk = Desk::new();
+    let hopper = hopper(&desk);
+    refused(&desk, &[&hopper, "--animation", "Skip"], &["--animation", "Skip", "hopper.gltf has 0 Hop"]);
+    refused(&desk, &[&hopper, "--animation", "1"], &["\"1\"", "0 Hop"]);
+    for time in ["2.5", "-1", "nan"] {
+        refused(&desk, &[&hopper, "--time", time], &["--time", "lasts 2 s"]);
+    }
+    let scene = desk.file(
+        "hop.json",
+        r#"{ "shape": { "type": "mesh", "file": "hopper.gltf" }, "animation": "Hop", "time": 3 }"#,
+    );
+    refused(&desk, &["--scene", &scene], &["hop.json: time: 3 s", "lasts 2 s"]);
 }
 
 #[test]
