@@ -20,7 +20,8 @@ pub struct Warp {
     /// The arc of a circle that the axis becomes: radians. The foot stays where it is and upright; positive leans towards +x. What is
     /// further from the axis than the circle's radius, height / |bend|, turns inside out.
     pub bend: f32,
-    /// How far the surface moves along its smooth normal at rest: model units, negative inwards.
+    /// How far the surface moves along its smooth normal at rest, which all vertices at one position share, so that hard edges stay
+    /// closed: model units, negative inwards. Folds narrower than this distance wrinkle.
     pub inflate: f32,
     /// What is twisted and bent; `None` for [`Axis::of`] the mesh.
     pub axis: Option<Axis>,
