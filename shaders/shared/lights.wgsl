@@ -18,7 +18,10 @@ struct Light {
     region_low: vec3f,
     view_count: u32,
     region_high: vec3f,
-    padding: u32,
+    // Strength towards cosine c of the angle from the axis: clamp(cone_scale·c + cone_offset, 0, 1)², 1 for a plain point light.
+    cone_scale: f32,
+    axis: vec3f,
+    cone_offset: f32,
 }
 
 // Unoccluded light from a cone of the sky.
@@ -57,7 +60,7 @@ struct Gather {
     ambients: array<Ambient, 8>,
 }
 
-// What comes from a directional or point light.
+// What comes from a directional, point or spot light.
 struct Arrival {
     // Unit vector.
     to_light: vec3f,
@@ -73,7 +76,10 @@ fn arrival(index: u32, position: vec3f, nearest_squared: f32, fallback: vec3f) -
     if lighting.lights[index].kind != POINT { return Arrival(light, strength); }
     let offset = light - position;
     let distance_squared = max(dot(offset, offset), max(nearest_squared, 1e-12));
-    return Arrival(safe_normalize(offset, fallback), strength / distance_squared);
+    let to_light = safe_normalize(offset, fallback);
+    let cosine = -dot(lighting.lights[index].axis, to_light);
+    let cone = saturate(lighting.lights[index].cone_scale * cosine + lighting.lights[index].cone_offset);
+    return Arrival(to_light, strength * (cone * cone / distance_squared));
 }
 
 fn safe_normalize(v: vec3f, fallback: vec3f) -> vec3f {

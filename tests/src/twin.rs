@@ -121,6 +121,15 @@ pub fn light(light: &Light, mm_per_unit: f64) -> translume_reference::Light {
             shadow: light.shadow,
             region: region(light.region),
         },
+        Light::Spot(light) => Twin::Spot {
+            position: mm(light.position),
+            direction: light.direction.map(f64::from),
+            intensity: light.intensity.map(|x| f64::from(x) * mm_per_unit * mm_per_unit),
+            inner_angle: light.inner_angle.into(),
+            outer_angle: light.outer_angle.into(),
+            shadow: light.shadow,
+            region: region(light.region),
+        },
         Light::Ambient(light) => Twin::Ambient {
             radiance: light.radiance.map(f64::from),
             axis: DVec3::from(light.axis.map(f64::from)).normalize().to_array(),

@@ -5,7 +5,7 @@ use crate::model;
 use crate::motion::Wish;
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
-use translume::{AmbientLight, DirectionalLight, Light, Medium, PointLight, Region};
+use translume::{AmbientLight, DirectionalLight, Light, Medium, PointLight, Region, SpotLight};
 use translume_mesh::builtin;
 
 /// A scene file.
@@ -146,6 +146,18 @@ pub enum SceneLight {
         shadow: bool,
         lit_region: Option<LitRegion>,
     },
+    Spot {
+        position: [f32; 3],
+        direction: [f32; 3],
+        intensity: [f32; 3],
+        #[serde(default)]
+        inner_angle_deg: f32,
+        #[serde(default = "spot_outer_angle_deg")]
+        outer_angle_deg: f32,
+        #[serde(default = "lit")]
+        shadow: bool,
+        lit_region: Option<LitRegion>,
+    },
     ConstantEnv {
         radiance: [f32; 3],
     },
@@ -154,6 +166,11 @@ pub enum SceneLight {
         axis: [f32; 3],
         half_angle_deg: f32,
     },
+}
+
+/// As in the glTF extension.
+fn spot_outer_angle_deg() -> f32 {
+    45.0
 }
 
 /// Light enters only through the face y = 0, and only where the coordinate is at least `min`.
@@ -304,6 +321,23 @@ impl SceneLight {
             Self::Point { position, intensity, shadow, lit_region } => Light::Point(PointLight {
                 position: *position,
                 intensity: *intensity,
+                shadow: *shadow,
+                region: region(lit_region),
+            }),
+            Self::Spot {
+                position,
+                direction,
+                intensity,
+                inner_angle_deg,
+                outer_angle_deg,
+                shadow,
+                lit_region,
+            } => Light::Spot(SpotLight {
+                position: *position,
+                direction: *direction,
+                intensity: *intensity,
+                inner_angle: inner_angle_deg.to_radians(),
+                outer_angle: outer_angle_deg.to_radians(),
                 shadow: *shadow,
                 region: region(lit_region),
             }),

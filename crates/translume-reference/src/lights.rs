@@ -38,6 +38,23 @@ pub enum Light {
         /// Where the light enters; everywhere if `None`.
         region: Option<Region>,
     },
+    /// A point that shines into a cone, as in the glTF extension `KHR_lights_punctual`.
+    Spot {
+        /// Position, mm.
+        position: [f64; 3],
+        /// Where it shines to; any length but zero.
+        direction: [f64; 3],
+        /// Radiant intensity inside the inner angle, W/sr, with distances in mm.
+        intensity: [f64; 3],
+        /// Angle from the axis where it begins to darken, radians.
+        inner_angle: f64,
+        /// Angle from the axis where it is dark, radians.
+        outer_angle: f64,
+        /// Whether the object shades itself.
+        shadow: bool,
+        /// Where the light enters; everywhere if `None`.
+        region: Option<Region>,
+    },
     /// Uniform radiance from a cone of the sky, cut off by the horizon of each point and never occluded.
     Ambient {
         /// Radiance inside the cone, W/(m² sr).
@@ -93,6 +110,16 @@ impl<'a> Lighting<'a> {
                 }
                 let arriving = scale(intensity, 1.0 / (distance * distance));
                 self.beam(at, offset / distance, distance, arriving, shadow, region)
+            }
+            Light::Spot { position, direction, intensity, inner_angle, outer_angle, shadow, region } => {
+                let offset = at.position - DVec3::from(position);
+                let angle = offset.angle_between(direction.into());
+                // The extension's formula, in its own terms.
+                let falloff =
+                    (angle.cos() - outer_angle.cos()) / (inner_angle.cos() - outer_angle.cos()).max(0.001);
+                let share = if angle.is_finite() { falloff.clamp(0.0, 1.0).powi(2) } else { 0.0 };
+                let towards = scale(intensity, share);
+                self.entering(&Light::Point { position, intensity: towards, shadow, region }, at)
             }
             Light::Ambient { radiance, axis, half_angle } => {
                 let cos_axis = at.normal.dot(axis.into());

@@ -50,7 +50,7 @@ impl<'a> From<&'a rig::Pose> for Deformation<'a> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Lighting<'a> {
-    /// Any mix of lights; up to 64 directional and point lights and 8 ambient ones.
+    /// Any mix of lights; up to 64 directional, point and spot lights and 8 ambient ones.
     Lights(&'a [Light]),
 }
 
@@ -72,8 +72,10 @@ pub(crate) fn validate_lights(lights: &[Light]) -> Result<(), Error> {
         light.validate(index)?;
     }
     let ambients = lights.iter().filter(|light| matches!(light, Light::Ambient(_))).count();
-    let limits =
-        [(lights.len() - ambients, MAX_LIGHTS, "directional and point"), (ambients, MAX_AMBIENTS, "ambient")];
+    let limits = [
+        (lights.len() - ambients, MAX_LIGHTS, "directional, point and spot"),
+        (ambients, MAX_AMBIENTS, "ambient"),
+    ];
     for (count, limit, kind) in limits {
         if count > limit {
             return Err(Error::Frame {
@@ -161,14 +163,19 @@ pub(crate) fn gather_layout(
 }
 
 fn light_layout(light: &Light, scale: f32, first_view: u32, view_count: u32) -> LightLayout {
+    // Intensity over distance² in world units is intensity·scale² over distance² in millimetres.
+    let in_mm = |intensity: [f32; 3]| intensity.map(|i| i * scale * scale);
+    let (axis, [cone_scale, cone_offset]) = match light {
+        Light::Spot(light) => (Vec3::from(light.direction).normalize(), light.falloff()),
+        // As bright in every direction.
+        _ => (Vec3::ZERO, [0.0, 1.0]),
+    };
     let (kind, vector, colour, region) = match light {
         Light::Directional(light) => {
             (0, Vec3::from(light.to_light).normalize().to_array(), light.irradiance, light.region)
         }
-        // Intensity over distance² in world units is intensity·scale² over distance² in millimetres.
-        Light::Point(light) => {
-            (1, light.position.map(|x| x * scale), light.intensity.map(|i| i * scale * scale), light.region)
-        }
+        Light::Point(light) => (1, light.position.map(|x| x * scale), in_mm(light.intensity), light.region),
+        Light::Spot(light) => (1, light.position.map(|x| x * scale), in_mm(light.intensity), light.region),
         Light::Ambient(light) => (2, light.axis, light.radiance, None),
     };
     // Far corners stay finite, so that infinity minus infinity never arises.
@@ -181,7 +188,9 @@ fn light_layout(light: &Light, scale: f32, first_view: u32, view_count: u32) -> 
         region_low: region.map_or([-1e30; 3], |region| region.low.map(bound)),
         view_count,
         region_high: region.map_or([1e30; 3], |region| region.high.map(bound)),
-        padding: 0,
+        cone_scale,
+        axis: axis.to_array(),
+        cone_offset,
     }
 }
 

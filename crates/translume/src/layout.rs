@@ -52,7 +52,9 @@ pub(crate) struct LightLayout {
     pub region_low: [f32; 3],
     pub view_count: u32,
     pub region_high: [f32; 3],
-    pub padding: u32,
+    pub cone_scale: f32,
+    pub axis: [f32; 3],
+    pub cone_offset: f32,
 }
 
 #[repr(C)]
@@ -213,7 +215,18 @@ mod tests {
             GATHER,
             "Light",
             LightLayout,
-            [vector, kind, colour, first_view, region_low, view_count, region_high, padding]
+            [
+                vector,
+                kind,
+                colour,
+                first_view,
+                region_low,
+                view_count,
+                region_high,
+                cone_scale,
+                axis,
+                cone_offset
+            ]
         );
         check!(GATHER, "Ambient", AmbientLayout, [radiance, cone_cosine, axis, padding, table]);
         check!(GATHER, "ShadowView", ShadowViewLayout, [matrix, texel, perspective, padding0, padding1]);

@@ -57,7 +57,7 @@ pub use descriptor::BodyDescriptor;
 pub use error::Error;
 pub use frame::{Deformation, Frame, Lighting};
 pub use layout::Cluster;
-pub use light::{AmbientLight, DirectionalLight, Light, PointLight, Region};
+pub use light::{AmbientLight, DirectionalLight, Light, PointLight, Region, SpotLight};
 pub use medium::Medium;
 pub use profile::Profile;
 pub use stages::composite::{Composite, CompositeTarget, CompositeView, Gloss};

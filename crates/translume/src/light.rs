@@ -13,6 +13,8 @@ pub enum Light {
     Directional(DirectionalLight),
     /// Light from a point, falling off with the square of the distance.
     Point(PointLight),
+    /// Light from a point into a cone.
+    Spot(SpotLight),
     /// The same radiance from every direction of a cone, or of the whole sky. Nothing occludes it.
     Ambient(AmbientLight),
 }
@@ -37,6 +39,25 @@ pub struct PointLight {
     pub position: [f32; 3],
     /// Radiant intensity, RGB: irradiance = intensity · cosine / distance², distance in world units.
     pub intensity: [f32; 3],
+    /// Whether the body shadows itself.
+    pub shadow: bool,
+    /// Light enters only inside this box; `None` for everywhere.
+    pub region: Option<Region>,
+}
+
+/// Light from a point into a cone, as in the glTF extension `KHR_lights_punctual`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SpotLight {
+    /// Position, world units. It may lie inside a body.
+    pub position: [f32; 3],
+    /// Where it shines to; any length but zero.
+    pub direction: [f32; 3],
+    /// Radiant intensity along its axis, RGB; between the two angles it falls to nothing by [`SpotLight::falloff`].
+    pub intensity: [f32; 3],
+    /// Angle from the axis up to which it is as bright as on the axis, radians, from 0 to below `outer_angle`.
+    pub inner_angle: f32,
+    /// Angle from the axis beyond which it is dark, radians, above `inner_angle` and at most π/2.
+    pub outer_angle: f32,
     /// Whether the body shadows itself.
     pub shadow: bool,
     /// Light enters only inside this box; `None` for everywhere.
@@ -76,6 +97,33 @@ impl Default for PointLight {
     }
 }
 
+impl Default for SpotLight {
+    /// Downwards, dark from 45° on, as in glTF.
+    fn default() -> Self {
+        Self {
+            position: [0.0; 3],
+            direction: [0.0, -1.0, 0.0],
+            intensity: [1.0; 3],
+            inner_angle: 0.0,
+            outer_angle: std::f32::consts::FRAC_PI_4,
+            shadow: true,
+            region: None,
+        }
+    }
+}
+
+impl SpotLight {
+    /// Scale s and offset o of the angular falloff clamp(s·c + o, 0, 1)², where c is the cosine of the angle from the axis.
+    ///
+    /// Source: `KHR_lights_punctual`, "Inner and Outer Cone Angles".
+    #[must_use]
+    pub fn falloff(&self) -> [f32; 2] {
+        let [inner, outer] = [self.inner_angle, self.outer_angle].map(f32::cos);
+        let scale = 1.0 / (inner - outer).max(0.001);
+        [scale, -outer * scale]
+    }
+}
+
 impl Default for AmbientLight {
     /// The whole sky at radiance 1.
     fn default() -> Self {
@@ -92,6 +140,17 @@ impl Light {
         let (colour, vectors, direction) = match self {
             Self::Directional(light) => (light.irradiance, [light.to_light; 2], Some(light.to_light)),
             Self::Point(light) => (light.intensity, [light.position; 2], None),
+            Self::Spot(light) => {
+                let SpotLight { inner_angle: inner, outer_angle: outer, .. } = *light;
+                // NaN is no angle either.
+                if !(0.0 <= inner && inner < outer && outer <= std::f32::consts::FRAC_PI_2) {
+                    return fail(
+                        format!("has a cone from {inner} to {outer} radians"),
+                        "give 0 ≤ inner_angle < outer_angle ≤ π/2",
+                    );
+                }
+                (light.intensity, [light.position, light.direction], Some(light.direction))
+            }
             Self::Ambient(light) => (light.radiance, [light.axis, [light.half_angle; 3]], Some(light.axis)),
         };
         if colour.iter().any(|c| !(0.0..=f32::MAX).contains(c)) {
@@ -171,6 +230,16 @@ mod tests {
         assert!(nan.validate(0).is_err());
         let negative = Light::Ambient(AmbientLight { radiance: [1.0, -1.0, 1.0], ..Default::default() });
         assert!(negative.validate(0).is_err());
+        for (inner_angle, outer_angle) in
+            [(0.5, 0.5), (-0.1, 0.5), (0.1, 1.6), (f32::NAN, 0.5), (0.1, f32::NAN)]
+        {
+            let cone = Light::Spot(SpotLight { inner_angle, outer_angle, ..Default::default() });
+            let message = cone.validate(5).unwrap_err().to_string();
+            assert!(message.contains("light 5 has a cone"), "{message}");
+        }
+        assert!(Light::Spot(SpotLight::default()).validate(0).is_ok());
+        let aimless = Light::Spot(SpotLight { direction: [0.0; 3], ..Default::default() });
+        assert!(aimless.validate(0).is_err());
         assert!(Light::Ambient(AmbientLight::default()).validate(0).is_ok());
     }
 }

@@ -2,14 +2,14 @@
 
 use glam::{DVec3, Mat4, Quat, Vec3};
 use std::sync::Arc;
-use translume::{AmbientLight, DirectionalLight, Light, Medium, PointLight};
+use translume::{AmbientLight, DirectionalLight, Light, Medium, PointLight, SpotLight};
 use translume_mesh::Warp;
 use translume_reference::gather::Source;
 use translume_tests::{
     Check, Fixture, Model, Pose, at_most, creature, holds, limb, luminous, notices, relative_rmse, sphere,
 };
 
-fn lights(shadow: bool) -> [Light; 3] {
+fn lights(shadow: bool) -> [Light; 4] {
     [
         Light::Directional(DirectionalLight {
             to_light: [0.4, 0.8, 0.6],
@@ -20,6 +20,15 @@ fn lights(shadow: bool) -> [Light; 3] {
         Light::Point(PointLight {
             position: [-70.0, 60.0, 90.0],
             intensity: [4e3, 6e3, 9e3],
+            shadow,
+            ..Default::default()
+        }),
+        Light::Spot(SpotLight {
+            position: [60.0, 120.0, 110.0],
+            direction: [-0.4, -0.6, -1.0],
+            intensity: [3e4, 2e4, 1e4],
+            inner_angle: 0.1,
+            outer_angle: 0.35,
             shadow,
             ..Default::default()
         }),
@@ -133,6 +142,38 @@ fn a_narrow_cone_follows_the_twin() {
     let [Light::Ambient(mut sky)] = cone() else { panic!("the cone is ambient") };
     sky.half_angle = 0.32;
     notices(narrow_cone(&cases()[1], &[Light::Ambient(sky)]));
+}
+
+/// A spot light on part of the body, beside one whose cone is a hundredth of a radian wider.
+#[test]
+fn a_spot_lights_its_cone() {
+    let case = &cases()[1];
+    let [_, _, Light::Spot(spot), _] = lights(false) else { panic!("the third is a spot light") };
+    let fixture = case.fixture(&[Light::Spot(spot)]);
+    let gpu = luminous(&fixture.sources());
+    let twin = |spot| luminous(&fixture.twin_sources(&pose(&case.model), &[Light::Spot(spot)], 1));
+    let check = |spot| at_most("gather: spot, relative RMSE", relative_rmse(&gpu, &twin(spot)), 1e-4);
+    // As for the other lights.
+    holds(check(spot));
+    notices(check(SpotLight { outer_angle: spot.outer_angle + 0.01, ..spot }));
+    let lit = gpu.iter().filter(|e| e[0] > 0.0).count();
+    assert!(lit > gpu.len() / 20 && lit < gpu.len() * 3 / 5, "{lit} of {} texels see it", gpu.len());
+    // From within the body's box one view along its axis is enough, and sees the same shadows as rays.
+    let near = Light::Spot(SpotLight {
+        position: [0.0, 60.0, 75.0],
+        direction: [0.0, -0.2, -1.0],
+        intensity: [1e4; 3],
+        outer_angle: 0.7,
+        ..SpotLight::default()
+    });
+    let fixture = case.fixture(&[near]);
+    let twin = luminous(&fixture.twin_sources(&pose(&case.model), &[near], 4));
+    // Shadow edges within texels of 4 mm, as above.
+    holds(at_most(
+        "gather: near spot, relative RMSE",
+        relative_rmse(&luminous(&fixture.sources()), &twin),
+        0.17,
+    ));
 }
 
 fn shadowed(case: &Case) -> Check {

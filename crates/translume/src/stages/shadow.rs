@@ -13,6 +13,8 @@ use glam::{Mat4, Vec3};
 /// A point light further off its body than this (cosine of the half angle under which the body appears) needs one view; a nearer
 /// one, or one inside, needs six.
 const SINGLE_VIEW_COSINE: f32 = 0.5;
+/// A spot light with a wider cone (radians) takes six views: one would be stretched too far towards its rim.
+const WIDEST_CONE: f32 = 1.05;
 /// Room around the body for filtering, in texels of the map.
 const MARGIN: f32 = 4.0;
 
@@ -51,8 +53,30 @@ pub(crate) fn views(light: &Light, scale: f32, corners: &[Vec3; 8], resolution: 
         Light::Point(light) if light.shadow => {
             point_views(Vec3::from(light.position) * scale, corners, resolution)
         }
+        Light::Spot(light) if light.shadow => {
+            let position = Vec3::from(light.position) * scale;
+            let views = point_views(position, corners, resolution);
+            if views.len() > 1 && light.outer_angle <= WIDEST_CONE {
+                vec![cone_view(position, light.direction.into(), light.outer_angle, corners, resolution)]
+            } else {
+                views
+            }
+        }
         _ => Vec::new(),
     }
+}
+
+/// What a spot light near or inside its body sees: beyond its cone it is dark anyway.
+fn cone_view(position: Vec3, axis: Vec3, outer_angle: f32, corners: &[Vec3; 8], resolution: u32) -> View {
+    let look = view::look_to_mat4(position, axis, axis.any_orthonormal_vector());
+    let margin = 1.0 + 2.0 * MARGIN / resolution as f32;
+    let far = reach(position, corners);
+    perspective(look, outer_angle.tan() * margin, 1e-4 * far, far, resolution)
+}
+
+/// A little more than the distance of the furthest corner.
+fn reach(position: Vec3, corners: &[Vec3; 8]) -> f32 {
+    1.02 * corners.iter().map(|corner| corner.distance(position)).fold(0.0, f32::max)
 }
 
 fn directional_view(to_light: Vec3, corners: &[Vec3; 8], resolution: u32) -> View {
@@ -87,7 +111,7 @@ fn point_views(position: Vec3, corners: &[Vec3; 8], resolution: u32) -> Vec<View
         let (near, far) = (-reduce(&seen, Vec3::max).z, -reduce(&seen, Vec3::min).z);
         return vec![perspective(look, tangent, 0.98 * near, 1.02 * far, resolution)];
     }
-    let far = 1.02 * corners.iter().map(|corner| corner.distance(position)).fold(0.0, f32::max);
+    let far = reach(position, corners);
     let faces = [Vec3::X, Vec3::NEG_X, Vec3::Y, Vec3::NEG_Y, Vec3::Z, Vec3::NEG_Z];
     faces
         .map(|face| {
