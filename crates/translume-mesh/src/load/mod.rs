@@ -143,7 +143,7 @@ pub enum LoadError {
 /// - *Materials.* [`Loaded::material`]; factors and no textures, nor the transforms of their coordinates.
 ///
 /// Draco, Meshopt and other compressed geometry is refused. A document may use the same data again and again, but to no
-/// more than 256 MB, or 24 bytes for each of its own.
+/// more than 192 MB, or 24 bytes for each of its own.
 ///
 /// # Errors
 /// [`LoadError`], which names the file and the element.

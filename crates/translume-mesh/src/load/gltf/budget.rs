@@ -1,7 +1,7 @@
 //! A bound on what a document may unfold to by using the same data again.
 
 /// Memory that any document may unfold to, however small its files.
-const FLOOR: usize = 256 << 20;
+const FLOOR: usize = 192 << 20;
 
 /// Memory per byte of the document's files. A quantised mesh of strips, without any reuse, comes to 20.
 const PER_BYTE: usize = 24;
