@@ -5,8 +5,7 @@ use crate::buffers::{Buffers, Extent, Outputs};
 use crate::descriptor::BodyDescriptor;
 use crate::frame::{self, Frame, GatherBody, Lighting};
 use crate::kernel_texture::KernelTexture;
-use crate::layout::DeformLayout;
-use crate::pose::{self, Pose};
+use crate::pose::Pose;
 use crate::profile::Dipole;
 use crate::stages::cluster::Tree;
 use crate::stages::deform::DeformGroups;
@@ -152,7 +151,7 @@ impl Body {
         }
         if moved {
             std::mem::swap(&mut self.pose, &mut self.next_pose);
-            self.upload_pose(queue, to_mm, winding);
+            self.upload_pose(queue, to_mm);
             self.pending.insert(StageSet::from_stage_on(Stage::Deform));
         }
         self.model = model;
@@ -268,16 +267,8 @@ impl Body {
         self.buffers.outputs(&self.depth_maps)
     }
 
-    fn upload_pose(&self, queue: &wgpu::Queue, to_mm: Mat4, winding: f32) {
-        let uniform = DeformLayout {
-            model: to_mm.to_cols_array_2d(),
-            normal: to_mm.inverse().transpose().to_cols_array_2d(),
-            warp: pose::warp_layout(&self.pose.warp, self.bounds.axis()),
-            vertex_count: self.extent.vertices,
-            target_count: self.extent.targets,
-            influences_per_vertex: self.extent.influences_per_vertex,
-            winding,
-        };
+    fn upload_pose(&self, queue: &wgpu::Queue, to_mm: Mat4) {
+        let uniform = self.pose.layout(&self.extent, self.bounds.axis(), to_mm);
         queue.write_buffer(&self.buffers.deform_uniform, 0, bytemuck::bytes_of(&uniform));
         queue.write_buffer(&self.buffers.weights, 0, bytemuck::cast_slice(&self.pose.weights));
         queue.write_buffer(&self.buffers.joints, 0, bytemuck::cast_slice(&self.pose.joints));

@@ -1,7 +1,7 @@
 //! The pose that a frame asks for, complete and checked.
 
 use crate::buffers::Extent;
-use crate::layout::WarpLayout;
+use crate::layout::{DeformLayout, WarpLayout};
 use crate::{Deformation, Error};
 use glam::Mat4;
 use std::f32::consts::TAU;
@@ -42,6 +42,19 @@ impl Pose {
     /// Whether normals have to follow the pose.
     pub fn deforms(&self) -> bool {
         !self.weights.is_empty() || !self.joints.is_empty() || !self.warp.is_identity()
+    }
+
+    /// As WGSL reads it, but for the arrays. `axis` is that of warps that bring none.
+    pub fn layout(&self, extent: &Extent, axis: Axis, to_mm: Mat4) -> DeformLayout {
+        DeformLayout {
+            model: to_mm.to_cols_array_2d(),
+            normal: to_mm.inverse().transpose().to_cols_array_2d(),
+            warp: warp_layout(&self.warp, self.warp.axis.unwrap_or(axis)),
+            vertex_count: extent.vertices,
+            target_count: extent.targets,
+            influences_per_vertex: extent.influences_per_vertex,
+            winding: to_mm.determinant().signum(),
+        }
     }
 
     fn set_weights(&mut self, weights: Option<&[f32]>) -> Result<(), Error> {
@@ -103,9 +116,7 @@ fn validate_warp(warp: &Warp) -> Result<(), Error> {
     }
 }
 
-/// A warp as WGSL reads it, around its own axis or the mesh's.
-pub(crate) fn warp_layout(warp: &Warp, of_mesh: Axis) -> WarpLayout {
-    let axis = warp.axis.unwrap_or(of_mesh);
+fn warp_layout(warp: &Warp, axis: Axis) -> WarpLayout {
     // One over less would be infinite.
     let upright = axis.height >= f32::MIN_POSITIVE;
     WarpLayout {
