@@ -1,76 +1,33 @@
 // Gather: every light → position, normal, live area and irradiance of every texel.
 
-// Samples along each side of a texel's square; shadow edges are filtered at this footprint.
-const FOOTPRINT: u32 = 4u;
-
-struct Texel {
-    triangle: u32,
-    barycentric_1: f32,
-    barycentric_2: f32,
-    // Rest area of the texel over that of its triangle.
-    area_ratio: f32,
-}
-
 @group(0) @binding(0) var<uniform> lighting: Gather;
 @group(0) @binding(1) var<storage, read> texels: array<Texel>;
 @group(0) @binding(2) var<storage, read> triangles: array<u32>;
 @group(0) @binding(3) var<storage, read> positions: array<vec4f>;
 @group(0) @binding(4) var<storage, read> normals: array<vec4f>;
+// Eight directions to a word: the share of the texel that sees each, in fifteenths; a row of all texels for each word.
+@group(0) @binding(5) var<storage, read> visible: array<u32>;
 // Position, live area in mm².
-@group(0) @binding(5) var<storage, read_write> texel_positions: array<vec4f>;
-@group(0) @binding(6) var<storage, read_write> texel_normals: array<vec4f>;
-@group(0) @binding(7) var<storage, read_write> texel_irradiance: array<vec4f>;
-@group(0) @binding(8) var shadow_maps: texture_depth_2d_array;
-@group(0) @binding(9) var shadow_sampler: sampler_comparison;
-
-// What a light needs to know of a texel.
-struct Receiver {
-    position: vec3f,
-    // Shading normal.
-    normal: vec3f,
-    // Normal of the triangle itself: shadows follow the geometry.
-    face: vec3f,
-    // Half the side of the texel's square, mm.
-    half_width: f32,
-    tangent: vec3f,
-    bitangent: vec3f,
-}
+@group(0) @binding(6) var<storage, read_write> texel_positions: array<vec4f>;
+@group(0) @binding(7) var<storage, read_write> texel_normals: array<vec4f>;
+@group(0) @binding(8) var<storage, read_write> texel_irradiance: array<vec4f>;
+@group(0) @binding(9) var shadow_maps: texture_depth_2d_array;
+@group(0) @binding(10) var shadow_sampler: sampler_comparison;
 
 @compute @workgroup_size(64)
 fn irradiance(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_index) local: u32) {
     let index = item_index(group, groups, local);
     if index >= lighting.texel_count { return; }
-    let texel = texels[index];
-    let a = triangles[texel.triangle * 3u];
-    let b = triangles[texel.triangle * 3u + 1u];
-    let c = triangles[texel.triangle * 3u + 2u];
-    let pa = positions[a].xyz;
-    let pb = positions[b].xyz;
-    let pc = positions[c].xyz;
-    let weights = vec3f(1.0 - texel.barycentric_1 - texel.barycentric_2, texel.barycentric_1, texel.barycentric_2);
-    // Light is looked up on the triangle even where the texel's centre lies beyond its chart.
-    let inside = max(weights, vec3f(0.0)) / (max(weights.x, 0.0) + max(weights.y, 0.0) + max(weights.z, 0.0));
-
-    let doubled = cross(pb - pa, pc - pa);
-    let doubled_area = length(doubled);
-    let smooth_normal = safe_normalize(normals[a].xyz * inside.x + normals[b].xyz * inside.y + normals[c].xyz * inside.z, normals[a].xyz);
-    var receiver: Receiver;
-    receiver.position = pa * inside.x + pb * inside.y + pc * inside.z;
-    receiver.face = safe_normalize(doubled * lighting.winding, smooth_normal);
-    receiver.normal = select(smooth_normal, receiver.face, lighting.flat_normals == 1u);
-    let area = texel.area_ratio * 0.5 * doubled_area;
-    receiver.half_width = 0.5 * sqrt(area);
-    receiver.tangent = any_perpendicular(receiver.face);
-    receiver.bitangent = cross(receiver.face, receiver.tangent);
-
-    var light = vec3f(0.0);
+    let receiver = receiver_at(index);
+    var light = sky(index, receiver.normal);
     for (var k = 0u; k < lighting.light_count; k++) {
-        light += direct(k, receiver);
+        if lighting.lights[k].kind >= RECTANGLE {
+            light += area_light(k, receiver);
+        } else {
+            light += direct(k, receiver);
+        }
     }
-    for (var k = 0u; k < lighting.ambient_count; k++) {
-        light += ambient(k, receiver.normal);
-    }
-    texel_positions[index] = vec4f(pa * weights.x + pb * weights.y + pc * weights.z, area);
+    texel_positions[index] = vec4f(receiver.center, receiver.area);
     texel_normals[index] = vec4f(receiver.normal, 0.0);
     texel_irradiance[index] = vec4f(light, 0.0);
 }
@@ -81,7 +38,30 @@ fn direct(index: u32, receiver: Receiver) -> vec3f {
     let cosine = dot(receiver.normal, arriving.to_light);
     if cosine <= 0.0 { return vec3f(0.0); }
     let entered = fresnel_transmittance(lighting.eta, cosine) * cosine * region_fraction(index, receiver);
-    return arriving.strength * (entered * visibility(index, receiver, arriving.to_light));
+    return arriving.strength * (entered * visibility(index, 0u, receiver, arriving.to_light));
+}
+
+// All of an area light's irradiance in closed form; Fresnel's share and the shadow by its emitters.
+fn area_light(index: u32, receiver: Receiver) -> vec3f {
+    let whole = area_irradiance(index, receiver.position, receiver.normal);
+    if whole <= 0.0 { return vec3f(0.0); }
+    var entered = 0.0;
+    var sum = 0.0;
+    for (var k = 0u; k < lighting.lights[index].emitter_count; k++) {
+        let emitter = lighting.emitters[lighting.lights[index].first_emitter + k].xyz;
+        let offset = emitter - receiver.position;
+        let to_light = safe_normalize(offset, receiver.normal);
+        let cosine = dot(receiver.normal, to_light);
+        let weight = max(cosine, 0.0) * max(-dot(emitter_normal(index, emitter), to_light), 0.0)
+            / max(dot(offset, offset), receiver.half_width * receiver.half_width);
+        if weight > 0.0 {
+            entered += weight * fresnel_transmittance(lighting.eta, cosine) * visibility(index, k, receiver, to_light);
+            sum += weight;
+        }
+    }
+    // No emitter above the horizon, yet a sliver of the light: at grazing incidence nothing enters but at eta = 1.
+    if sum == 0.0 { return vec3f(0.0); }
+    return lighting.lights[index].colour * (whole * entered / sum);
 }
 
 // Part of the texel's square inside the box where the light enters.
@@ -93,20 +73,40 @@ fn region_fraction(index: u32, receiver: Receiver) -> f32 {
     return fraction.x * fraction.y * fraction.z;
 }
 
-// Mean over the texel's square.
-fn visibility(index: u32, receiver: Receiver, to_light: vec3f) -> f32 {
+// Mean over the texel's square, seen from a light or one of its emitters.
+fn visibility(index: u32, emitter: u32, receiver: Receiver, to_light: vec3f) -> f32 {
     if lighting.lights[index].first_view == NO_SHADOW { return 1.0; }
-    let view = shadow_view(index, to_light);
-    let lifted = lift(view, receiver.position, receiver.face, to_light, receiver.half_width);
-    var lit = 0.0;
-    let side = select(FOOTPRINT, 1u, receiver.half_width == 0.0);
-    for (var v = 0u; v < side; v++) {
-        for (var u = 0u; u < side; u++) {
-            let offset = (2.0 * vec2f(f32(u), f32(v)) + 1.0) / f32(side) - 1.0;
-            lit += lit_at(view, lifted + (receiver.tangent * offset.x + receiver.bitangent * offset.y) * receiver.half_width);
+    let count = lighting.lights[index].view_count;
+    let view = shadow_view(lighting.lights[index].first_view + emitter * count, count, to_light);
+    return lit_share(lighting.views[view], receiver, to_light, lighting.filter_side);
+}
+
+// Ambient lights and environments.
+fn sky(index: u32, normal: vec3f) -> vec3f {
+    var open = environment_irradiance(lighting.open_sky, normal);
+    var shadowed = environment_irradiance(lighting.shadowed_sky, normal);
+    for (var k = 0u; k < lighting.ambient_count; k++) {
+        let light = ambient(k, normal);
+        if lighting.ambients[k].shadow == 1u { shadowed += light; } else { open += light; }
+    }
+    if lighting.direction_count == 0u { return open; }
+    return open + shadowed * sky_share(index, normal);
+}
+
+// The share of the sky's light that the body lets through, by the directions along which that is known.
+fn sky_share(index: u32, normal: vec3f) -> vec3f {
+    var lit = vec3f(0.0);
+    var all = vec3f(0.0);
+    for (var k = 0u; k < lighting.direction_count; k++) {
+        let cosine = dot(normal, lighting.sky[k].direction);
+        if cosine > 0.0 {
+            let light = lighting.sky[k].radiance * (cosine * fresnel_transmittance(lighting.eta, cosine));
+            let word = visible[(k / 8u) * lighting.texel_count + index];
+            lit += light * (f32((word >> (4u * (k % 8u))) & 15u) / 15.0);
+            all += light;
         }
     }
-    return lit / f32(side * side);
+    return select(lit / all, vec3f(1.0), all <= vec3f(0.0));
 }
 
 fn ambient(index: u32, normal: vec3f) -> vec3f {
@@ -115,9 +115,4 @@ fn ambient(index: u32, normal: vec3f) -> vec3f {
     let low = lighting.ambients[index].table[cell / 4u][cell % 4u];
     let high = lighting.ambients[index].table[(cell + 1u) / 4u][(cell + 1u) % 4u];
     return lighting.ambients[index].radiance * mix(low, high, x - f32(cell));
-}
-
-fn any_perpendicular(n: vec3f) -> vec3f {
-    let axis = select(vec3f(1.0, 0.0, 0.0), vec3f(0.0, 1.0, 0.0), abs(n.x) > 0.7);
-    return safe_normalize(cross(axis, n), axis);
 }

@@ -17,19 +17,45 @@ fn ggx(eta: f32, roughness: f32, normal: vec3f, to_eye: vec3f, to_light: vec3f) 
     return distribution * masking * reflected * light_cosine;
 }
 
-// face: normal of the triangle, which shadows follow
+struct Surface {
+    position: vec3f,
+    normal: vec3f,
+    // Normal of the triangle, which shadows follow.
+    face: vec3f,
+    to_eye: vec3f,
+}
+
+// An area light's emitter as a point.
+fn emitted(index: u32, emitter: u32, position: vec3f) -> Arrival {
+    let point = lighting.emitters[lighting.lights[index].first_emitter + emitter];
+    let offset = point.xyz - position;
+    let to_light = safe_normalize(offset, vec3f(0.0, 1.0, 0.0));
+    let cosine = max(-dot(emitter_normal(index, point.xyz), to_light), 0.0);
+    return Arrival(to_light, lighting.lights[index].colour * (point.w * cosine / max(dot(offset, offset), point.w)));
+}
+
+fn gloss_of(index: u32, emitter: u32, arriving: Arrival, roughness: f32, surface: Surface) -> vec3f {
+    let reflected = ggx(lighting.eta, roughness, surface.normal, surface.to_eye, arriving.to_light);
+    if reflected <= 0.0 { return vec3f(0.0); }
+    var lit = 1.0;
+    if lighting.lights[index].first_view != NO_SHADOW {
+        let count = lighting.lights[index].view_count;
+        let view = lighting.views[shadow_view(lighting.lights[index].first_view + emitter * count, count, arriving.to_light)];
+        lit = lit_at(view, lift(view, surface.position, surface.face, arriving.to_light, 0.0));
+    }
+    return arriving.strength * (reflected * lit);
+}
+
 fn gloss(roughness: f32, position: vec3f, normal: vec3f, face: vec3f, to_eye: vec3f) -> vec3f {
     var sum = vec3f(0.0);
     for (var k = 0u; k < lighting.light_count; k++) {
-        let arriving = arrival(k, position, 0.0, normal);
-        let reflected = ggx(lighting.eta, roughness, normal, to_eye, arriving.to_light);
-        if reflected > 0.0 {
-            var lit = 1.0;
-            if lighting.lights[k].first_view != NO_SHADOW {
-                let view = shadow_view(k, arriving.to_light);
-                lit = lit_at(view, lift(view, position, face, arriving.to_light, 0.0));
-            }
-            sum += arriving.strength * (reflected * lit);
+        let surface = Surface(position, normal, face, to_eye);
+        if lighting.lights[k].kind < RECTANGLE {
+            sum += gloss_of(k, 0u, arrival(k, position, 0.0, normal), roughness, surface);
+            continue;
+        }
+        for (var emitter = 0u; emitter < lighting.lights[k].emitter_count; emitter++) {
+            sum += gloss_of(k, emitter, emitted(k, emitter, position), roughness, surface);
         }
     }
     let mirrored = reflect(-to_eye, normal);

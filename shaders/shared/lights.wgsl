@@ -2,47 +2,69 @@
 
 const DIRECTIONAL: u32 = 0u;
 const POINT: u32 = 1u;
+const RECTANGLE: u32 = 2u;
+const SPHERE: u32 = 3u;
 const NO_SHADOW: u32 = 0xffffffffu;
 // Intervals of an ambient light's table over the cosine −1..1.
 const AMBIENT_INTERVALS: f32 = 32.0;
 
 struct Light {
-    // Unit vector towards a directional light; position of a point light, mm.
+    // Unit vector towards a directional light; position of a point light or middle of an area light, mm.
     vector: vec3f,
     kind: u32,
-    // Irradiance on a facing surface; radiant intensity in units of mm² times irradiance.
+    // Irradiance on a facing surface; radiant intensity in units of mm² times irradiance; radiance of an area light.
     colour: vec3f,
     // First of its shadow views, or NO_SHADOW.
     first_view: u32,
     // Light enters the body only inside this box, mm.
     region_low: vec3f,
+    // Shadow views, for an area light those of one emitter.
     view_count: u32,
     region_high: vec3f,
     // Strength towards cosine c of the angle from the axis: clamp(cone_scale·c + cone_offset, 0, 1)², 1 for a plain point light.
     cone_scale: f32,
+    // Of a spot light's cone; where a rectangle shines to.
     axis: vec3f,
     cone_offset: f32,
+    // Half a rectangle, mm; a sphere has its radius in x.
+    half_right: vec3f,
+    // Points of an area light.
+    first_emitter: u32,
+    half_up: vec3f,
+    emitter_count: u32,
 }
 
-// Unoccluded light from a cone of the sky.
+// Light from a cone of the sky.
 struct Ambient {
     radiance: vec3f,
     // Cosine of the cone's half angle.
     cone_cosine: f32,
     axis: vec3f,
-    padding: u32,
+    // 1 where the body shadows it.
+    shadow: u32,
     // Irradiance inside the surface for unit radiance, over the cosine between normal and axis; 33 values.
     table: array<vec4f, 9>,
 }
 
 struct ShadowView {
     matrix: mat4x4f,
+    // Corner and width of its square of the layer, in widths of a layer.
+    tile: vec3f,
+    layer: u32,
     // Width of a texel of the map, mm; for a perspective view at a depth of 1 mm.
     texel: f32,
     // 1 for a perspective view.
     perspective: f32,
     padding0: f32,
     padding1: f32,
+}
+
+// A direction in which the body's shadow is known, and the shadowed light of the sky from there.
+struct Sky {
+    direction: vec3f,
+    padding0: u32,
+    radiance: vec3f,
+    padding1: u32,
 }
 
 struct Gather {
@@ -53,11 +75,19 @@ struct Gather {
     flat_normals: u32,
     eta: f32,
     winding: f32,
-    padding0: u32,
-    padding1: u32,
+    // Comparisons with a depth map along each side of a texel's square.
+    filter_side: u32,
+    // 0 where no light of the sky is shadowed.
+    direction_count: u32,
+    // Environments that are seen from everywhere, and those that the body shadows, as `environment_irradiance` takes them.
+    open_sky: array<vec4f, 9>,
+    shadowed_sky: array<vec4f, 9>,
     lights: array<Light, 64>,
-    views: array<ShadowView, 64>,
     ambients: array<Ambient, 8>,
+    // Position, mm, and area, mm².
+    emitters: array<vec4f, 256>,
+    views: array<ShadowView, 256>,
+    sky: array<Sky, 256>,
 }
 
 // What comes from a directional, point or spot light.

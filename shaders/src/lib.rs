@@ -29,13 +29,25 @@ pub const NORMALS: Shader =
     shader!("normals", "shared/dispatch.wgsl", "shared/warp.wgsl", "shared/deform.wgsl", "normals.wgsl");
 /// Depth maps from lights.
 pub const SHADOW: Shader = shader!("shadow", "shadow.wgsl");
+/// Depth maps along directions of the sky → the share of every texel that sees them.
+pub const VISIBILITY: Shader = shader!(
+    "visibility",
+    "shared/dispatch.wgsl",
+    "shared/lights.wgsl",
+    "shared/shadow_map.wgsl",
+    "shared/receiver.wgsl",
+    "visibility.wgsl"
+);
 /// Lights → position, normal, area, irradiance of every texel.
 pub const GATHER: Shader = shader!(
     "gather",
     "shared/dispatch.wgsl",
     "shared/fresnel.wgsl",
     "shared/lights.wgsl",
+    "shared/area_light.wgsl",
+    "shared/environment.wgsl",
     "shared/shadow_map.wgsl",
+    "shared/receiver.wgsl",
     "gather.wgsl"
 );
 /// Texels → their tree of clusters.
@@ -55,6 +67,7 @@ pub const COMPOSITE: Shader = shader!(
     "composite",
     "shared/fresnel.wgsl",
     "shared/lights.wgsl",
+    "shared/area_light.wgsl",
     "shared/shadow_map.wgsl",
     "shared/gloss.wgsl",
     "shared/exitance.wgsl",
@@ -62,7 +75,8 @@ pub const COMPOSITE: Shader = shader!(
 );
 
 /// Every module, in the order light flows through them.
-pub const ALL: [Shader; 8] = [DEFORM, NORMALS, SHADOW, GATHER, CLUSTER, SCATTER, RESOLVE, COMPOSITE];
+pub const ALL: [Shader; 9] =
+    [DEFORM, NORMALS, VISIBILITY, SHADOW, GATHER, CLUSTER, SCATTER, RESOLVE, COMPOSITE];
 
 /// WGSL functions for a host's own material: `translume_exitance(texture, uv)` samples radiant exitance B, and
 /// `fresnel_transmittance(eta, cosine)` weighs what leaves towards the eye: L = F_t·B/π.

@@ -2,7 +2,7 @@
 
 use crate::{Model, gpu};
 use std::sync::Arc;
-use translume::{Body, BodyDescriptor, Cluster, Error, Frame, readback, wgpu};
+use translume::{Body, BodyDescriptor, Cluster, Error, Frame, ShadowOptions, Stage, Work, readback, wgpu};
 use translume_reference::gather::Source;
 
 /// A model, and the body made of it.
@@ -34,7 +34,7 @@ impl Fixture {
     pub fn try_new(model: &Arc<Model>, change: impl FnOnce(&mut BodyDescriptor<'_>)) -> Result<Self, Error> {
         let mut descriptor = BodyDescriptor {
             mm_per_unit: 1.0,
-            shadow_resolution: 256,
+            shadows: ShadowOptions { resolution: 256, ..ShadowOptions::default() },
             ..BodyDescriptor::new(&model.mesh, &model.atlas)
         };
         change(&mut descriptor);
@@ -52,6 +52,18 @@ impl Fixture {
         self.encode();
     }
 
+    /// One frame up to its irradiance; the later stages stay pending.
+    ///
+    /// # Panics
+    /// If the frame is refused.
+    pub fn light(&mut self, frame: &Frame<'_>) -> Work {
+        self.prepare(frame).unwrap_or_else(|error| panic!("[{}] {error}", gpu().adapter_name));
+        let mut encoder = gpu().device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        let work = self.body.encode_through(&mut encoder, Stage::Gather);
+        gpu().queue.submit([encoder.finish()]);
+        work
+    }
+
     /// Prepares a frame without encoding it.
     ///
     /// # Errors
@@ -61,10 +73,11 @@ impl Fixture {
     }
 
     /// Encodes and submits what is pending.
-    pub fn encode(&mut self) {
+    pub fn encode(&mut self) -> Work {
         let mut encoder = gpu().device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        self.body.encode(&mut encoder);
+        let work = self.body.encode(&mut encoder);
         gpu().queue.submit([encoder.finish()]);
+        work
     }
 
     /// Deformed vertex positions, mm.

@@ -40,6 +40,7 @@ impl Pose {
             deformation,
             warp: self.warp,
             lighting: Lighting::Lights(lights),
+            casters: None,
         }
     }
 }

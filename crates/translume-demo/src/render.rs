@@ -11,7 +11,7 @@ use crate::studio::Studio;
 use crate::{model, progress};
 use std::path::Path;
 use std::time::Instant;
-use translume::{BodyDescriptor, Frame, Gloss, Lighting, Medium, Method, Profile};
+use translume::{BodyDescriptor, Frame, Gloss, Lighting, Medium, Method, Profile, ShadowOptions};
 
 /// Everything a picture needs, in the units of the scene.
 struct Setup {
@@ -67,7 +67,7 @@ pub fn run(arguments: &Render) -> Result<(), Error> {
         method,
         mm_per_unit: setup.mm_per_unit,
         flat_normals: setup.flat_normals,
-        shadow_resolution: arguments.shadow,
+        shadows: ShadowOptions { resolution: arguments.shadow, ..Default::default() },
         ..BodyDescriptor::new(mesh, &atlas)
     };
     let samples = arguments.samples.unwrap_or(match output.format {
@@ -91,6 +91,7 @@ pub fn run(arguments: &Render) -> Result<(), Error> {
             deformation: (&moment.pose).into(),
             warp: motion.warp,
             lighting: Lighting::Lights(&lights),
+            casters: None,
         };
         frames.push(studio.take(&frame, &camera, setup.gloss, develop)?);
         bar.inc(1);

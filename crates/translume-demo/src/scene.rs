@@ -348,6 +348,7 @@ impl SceneLight {
                 radiance: *radiance,
                 axis: *axis,
                 half_angle: half_angle_deg.to_radians(),
+                shadow: false,
             }),
         }
     }

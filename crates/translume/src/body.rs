@@ -3,16 +3,21 @@
 use crate::bounds::PoseBounds;
 use crate::buffers::{Buffers, Extent, Outputs};
 use crate::descriptor::BodyDescriptor;
-use crate::frame::{self, Frame, GatherBody, Lighting};
+use crate::frame::{self, Casters, Frame, Lighting};
+use crate::gpu::Pass;
 use crate::kernel_texture::KernelTexture;
+use crate::layout::MAX_VIEWS;
+use crate::lighting::{self, GatherBody};
 use crate::pose::Pose;
 use crate::profile::Dipole;
+use crate::shadow_view::{Subject, View};
 use crate::stages::cluster::Tree;
 use crate::stages::deform::DeformGroups;
 use crate::stages::scatter::{Method, Scatter};
-use crate::stages::shadow::DepthMaps;
+use crate::stages::shadow::{DepthMaps, ShadowView};
+use crate::stages::visibility::SkyMemory;
 use crate::stages::{Stage, StageSet, Stages};
-use crate::{Error, Light, Medium, Profile};
+use crate::{Error, Light, Medium, Profile, ShadowOptions, Work};
 use glam::{Mat4, Vec3};
 use std::sync::Arc;
 
@@ -28,7 +33,9 @@ pub struct Body {
     tree: Tree,
     bounds: PoseBounds,
     kernel: KernelTexture,
-    shadow_resolution: u32,
+    shadows: ShadowOptions,
+    /// The narrowest limit of the device that shadows run into.
+    limits: wgpu::Limits,
 
     medium: Medium,
     profile: Profile,
@@ -40,12 +47,19 @@ pub struct Body {
     /// Where the next frame's pose is made, so that a refused one leaves no trace and none allocates.
     next_pose: Pose,
     lights: Vec<Light>,
-    view_count: u32,
+    casters: Option<Casters>,
+    /// Irradiance that the host supplies in place of lights.
+    host_irradiance: Option<wgpu::Buffer>,
+    /// Views of the lights, and which light each belongs to.
+    views: Vec<View>,
+    owners: Vec<usize>,
+    sky: SkyMemory,
     pending: StageSet,
     /// Whether the kernel table no longer fits the medium, or the scatter uniforms the method.
     scatter_stale: bool,
     /// Whether light now enters the surface differently.
     surface_stale: bool,
+    shadows_stale: bool,
     never_prepared: bool,
 
     exitance: wgpu::Texture,
@@ -74,10 +88,11 @@ impl Body {
         let exitance = stages.resolve.texture(device, atlas.size);
         let exitance_view = exitance.create_view(&wgpu::TextureViewDescriptor::default());
         let kernel = KernelTexture::new(device, mesh, atlas);
-        let depth_maps = stages.shadow.depth_maps(device, descriptor.shadow_resolution, 1);
+        let shadows = descriptor.shadows;
+        let depth_maps = stages.shadow.depth_maps(device, shadows.resolution, 1, MAX_VIEWS as u64);
         Ok(Self {
             deform_groups: stages.deform.bind(device, &buffers),
-            gather_group: stages.gather.bind(device, &buffers, &depth_maps),
+            gather_group: stages.gather.bind(device, &buffers, &depth_maps, None),
             cluster_group: stages.cluster.bind(device, &buffers),
             scatter_group: stages.scatter.bind(device, &buffers, &kernel.view),
             resolve_group: stages.resolve.bind(device, &buffers.exitance, &buffers.pixels, &exitance_view),
@@ -89,7 +104,8 @@ impl Body {
             tree,
             bounds: PoseBounds::new(mesh),
             kernel,
-            shadow_resolution: descriptor.shadow_resolution,
+            shadows,
+            limits: device.limits(),
             medium,
             profile,
             method,
@@ -98,10 +114,15 @@ impl Body {
             pose: Pose::rest(&extent),
             next_pose: Pose::rest(&extent),
             lights: Vec::new(),
-            view_count: 0,
+            casters: None,
+            host_irradiance: None,
+            views: Vec::new(),
+            owners: Vec::new(),
+            sky: SkyMemory::new(&shadows),
             pending: StageSet::default(),
             scatter_stale: true,
             surface_stale: true,
+            shadows_stale: false,
             never_prepared: true,
             exitance,
             exitance_view,
@@ -122,16 +143,32 @@ impl Body {
         let model = Mat4::from_cols_array_2d(&frame.model);
         frame::validate_model(model)?;
         self.next_pose.set(frame.deformation, frame.warp)?;
-        let Lighting::Lights(lights) = frame.lighting;
+        let (lights, host_irradiance): (&[Light], _) = match frame.lighting {
+            Lighting::Lights(lights) => (lights, None),
+            Lighting::Irradiance(buffer) => (&[], Some(buffer)),
+        };
         frame::validate_lights(lights)?;
+        if let Some(buffer) = host_irradiance {
+            frame::validate_irradiance(buffer, self.extent.texels)?;
+        }
+        let casters = frame.casters.map(|c| frame::caster_corners(&c, self.mm_per_unit)).transpose()?;
+        let has_sky = lighting::has_shadowed_sky(lights);
+        if has_sky {
+            self.check_sky()?;
+        }
 
         let moved = self.never_prepared || model != self.model || self.next_pose != self.pose;
-        let relit = moved || self.surface_stale || lights != self.lights;
+        let shaded = moved || frame.casters != self.casters || self.shadows_stale;
+        let relit = shaded
+            || self.surface_stale
+            || lights != self.lights
+            || self.host_irradiance.is_some() && host_irradiance.is_none();
         let to_mm = Mat4::from_scale(Vec3::splat(self.mm_per_unit)) * model;
         let winding = to_mm.determinant().signum();
         let corners =
             self.bounds.posed(&self.next_pose).corners().map(|corner| to_mm.transform_point3(corner));
         frame::validate_corners(&corners)?;
+        let subject = Subject { corners: &corners, casters: casters.as_ref() };
         if relit {
             let body = GatherBody {
                 texels: self.extent.texels,
@@ -139,14 +176,15 @@ impl Body {
                 eta: self.medium.ior,
                 winding,
                 mm_per_unit: self.mm_per_unit,
-                corners: &corners,
-                shadow_resolution: self.shadow_resolution,
+                subject: &subject,
+                shadows: &self.shadows,
+                directions: &self.sky.directions,
             };
-            let (layout, views) = frame::gather_layout(lights, &body)?;
-            self.make_room_for_views(device, views.len() as u32);
-            self.depth_maps.write_views(queue, &views);
-            self.view_count = views.len() as u32;
-            queue.write_buffer(&self.buffers.gather_uniform, 0, bytemuck::bytes_of(&*layout));
+            let gathering = lighting::gather(lights, &body)?;
+            self.make_room_for_views(device, gathering.layers);
+            self.depth_maps.write_views(queue, 0, &gathering.views);
+            queue.write_buffer(&self.buffers.gather_uniform, 0, bytemuck::bytes_of(&*gathering.layout));
+            (self.views, self.owners) = (gathering.views, gathering.owners);
             self.pending.insert(StageSet::from_stage_on(Stage::Shadow));
         }
         if moved {
@@ -154,11 +192,25 @@ impl Body {
             self.upload_pose(queue, to_mm);
             self.pending.insert(StageSet::from_stage_on(Stage::Deform));
         }
+        if shaded {
+            self.sky.forget();
+        }
+        let renews_sky = has_sky && self.prepare_sky(device, queue, &subject);
+        self.pending.set(Stage::Visibility, renews_sky);
+        if renews_sky {
+            self.pending.insert(StageSet::from_stage_on(Stage::Gather));
+        }
+        if host_irradiance.is_some() {
+            self.pending.insert(StageSet::from_stage_on(Stage::Cluster));
+        }
+        self.host_irradiance = host_irradiance.cloned();
+        self.casters = frame.casters;
         self.model = model;
         self.lights.clear();
         self.lights.extend_from_slice(lights);
         self.never_prepared = false;
         self.surface_stale = false;
+        self.shadows_stale = false;
         self.refresh_kernel(queue, frame::diagonal(&corners));
         Ok(())
     }
@@ -169,41 +221,118 @@ impl Body {
         self.pending
     }
 
+    /// The views of depth maps that the next [`encode`](Self::encode) draws, for a host that adds casters to them.
+    pub fn shadow_views(&self) -> impl Iterator<Item = ShadowView> {
+        let to_mm = Mat4::from_scale(Vec3::splat(self.mm_per_unit));
+        let sky = if self.pending.contains(Stage::Visibility) { self.sky.views.as_slice() } else { &[] };
+        let lights = if self.pending.contains(Stage::Shadow) { self.views.as_slice() } else { &[] };
+        let sky = sky.iter().map(|view| (view, None));
+        let lights = lights.iter().zip(&self.owners).map(|(view, light)| (view, Some(*light)));
+        sky.chain(lights).enumerate().map(move |(index, (view, light))| ShadowView {
+            view_projection: (view.matrix * to_mm).to_cols_array_2d(),
+            index,
+            light,
+        })
+    }
+
     /// Records the stages whose inputs changed since the last call. Never submits, blocks or allocates.
-    pub fn encode(&mut self, encoder: &mut wgpu::CommandEncoder) {
-        let pending = std::mem::take(&mut self.pending);
-        let stages = &self.stages;
+    pub fn encode(&mut self, encoder: &mut wgpu::CommandEncoder) -> Work {
+        self.record(encoder, Stage::Resolve, &mut |_, _| ())
+    }
+
+    /// Records those of the pending stages that come before or are `last`; the others stay pending.
+    pub fn encode_through(&mut self, encoder: &mut wgpu::CommandEncoder, last: Stage) -> Work {
+        self.record(encoder, last, &mut |_, _| ())
+    }
+
+    /// As [`encode`](Self::encode), and lets the host draw its casters into every depth map: `casters` gets the pass, whose viewport is the
+    /// map's, and the [`ShadowView::index`]. The pass has a `Depth32Float` attachment of one sample and no colour; nearer is greater. Say in
+    /// [`Frame::casters`] where they are.
+    pub fn encode_with(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        mut casters: impl FnMut(&mut wgpu::RenderPass<'_>, usize),
+    ) -> Work {
+        self.record(encoder, Stage::Resolve, &mut casters)
+    }
+
+    fn record(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        last: Stage,
+        casters: &mut dyn FnMut(&mut wgpu::RenderPass<'_>, usize),
+    ) -> Work {
+        let pending = self.pending.take_through(last);
+        let (mut work, stages) = (Work::default(), &self.stages);
+        let (texels, indices) = (self.extent.texels, self.extent.triangles * 3);
         if pending.contains(Stage::Deform) {
-            let mut pass = begin(encoder, "deform");
             stages.deform.encode(
-                &mut pass,
+                &mut Pass::begin(encoder, "deform", &mut work),
                 &self.deform_groups,
                 self.extent.vertices,
                 self.extent.influences_per_vertex > 0,
                 self.pose.deforms(),
             );
         }
+        let mut first_view = 0;
+        if pending.contains(Stage::Visibility) {
+            first_view = self.sky.views.len();
+            let (sky, extent) = (&mut self.sky, (texels, indices));
+            stages.visibility.encode(encoder, &stages.shadow, sky, &self.buffers, extent, (&mut work, casters));
+        }
         if pending.contains(Stage::Shadow) {
-            let indices = self.extent.triangles * 3;
-            stages.shadow.encode(encoder, &self.depth_maps, &self.buffers, self.view_count, indices);
+            let mut casters = |pass: &mut wgpu::RenderPass<'_>, slot| casters(pass, first_view + slot);
+            let views = (0, self.views.as_slice());
+            stages.shadow.encode(encoder, &self.depth_maps, views, &self.buffers, indices, &mut casters);
+            work.draws += self.views.len() as u32;
         }
         if pending.contains(Stage::Gather) {
-            stages.gather.encode(&mut begin(encoder, "gather"), &self.gather_group, self.extent.texels);
+            stages.gather.encode(&mut Pass::begin(encoder, "gather", &mut work), &self.gather_group, texels);
         }
         if pending.contains(Stage::Cluster) {
-            stages.cluster.encode(&mut begin(encoder, "cluster"), &self.cluster_group, &self.tree);
+            if let Some(irradiance) = &self.host_irradiance {
+                let size = 16 * u64::from(texels);
+                encoder.copy_buffer_to_buffer(irradiance, 0, &self.buffers.irradiance, 0, size);
+            }
+            stages.cluster.encode(
+                &mut Pass::begin(encoder, "cluster", &mut work),
+                &self.cluster_group,
+                &self.tree,
+            );
         }
         if pending.contains(Stage::Scatter) {
-            let mut pass = begin(encoder, "scatter");
-            stages.scatter.encode(&mut pass, &self.scatter_group, self.method, self.extent.texels);
+            let mut pass = Pass::begin(encoder, "scatter", &mut work);
+            stages.scatter.encode(&mut pass, &self.scatter_group, self.method, texels);
         }
         if pending.contains(Stage::Resolve) {
             stages.resolve.encode(
-                &mut begin(encoder, "resolve"),
+                &mut Pass::begin(encoder, "resolve", &mut work),
                 &self.resolve_group,
                 self.extent.atlas_size,
             );
         }
+        work
+    }
+
+    /// Changes how finely shadows are computed; the next frame looks anew from every light.
+    ///
+    /// # Errors
+    /// [`Error::Shadow`] names the number that cannot be.
+    pub fn set_shadows(&mut self, shadows: ShadowOptions) -> Result<(), Error> {
+        shadows.validate(self.limits.max_texture_dimension_2d)?;
+        let ShadowOptions { directions, direction_resolution, .. } = self.shadows;
+        if (directions, direction_resolution) != (shadows.directions, shadows.direction_resolution) {
+            self.sky = SkyMemory::new(&shadows);
+        }
+        self.shadows_stale |= shadows != self.shadows;
+        self.shadows = shadows;
+        Ok(())
+    }
+
+    /// How finely shadows are computed.
+    #[must_use]
+    pub fn shadows(&self) -> &ShadowOptions {
+        &self.shadows
     }
 
     /// Changes the medium; the next frame scatters anew, and gathers too if the index of refraction changed.
@@ -274,11 +403,43 @@ impl Body {
         queue.write_buffer(&self.buffers.joints, 0, bytemuck::cast_slice(&self.pose.joints));
     }
 
-    fn make_room_for_views(&mut self, device: &wgpu::Device, views: u32) {
-        if views > self.depth_maps.layers() {
-            self.depth_maps = self.stages.shadow.depth_maps(device, self.shadow_resolution, views);
-            self.gather_group = self.stages.gather.bind(device, &self.buffers, &self.depth_maps);
+    fn make_room_for_views(&mut self, device: &wgpu::Device, layers: u32) {
+        if !self.depth_maps.fit(self.shadows.resolution, layers) {
+            let (width, layers) = (self.shadows.resolution, layers.max(1));
+            self.depth_maps = self.stages.shadow.depth_maps(device, width, layers, MAX_VIEWS as u64);
+            self.bind_gather(device);
         }
+    }
+
+    fn bind_gather(&mut self, device: &wgpu::Device) {
+        self.gather_group =
+            self.stages.gather.bind(device, &self.buffers, &self.depth_maps, self.sky.visible());
+    }
+
+    /// Whether the device can remember what every texel sees of the sky.
+    fn check_sky(&self) -> Result<(), Error> {
+        let required = SkyMemory::size(&self.shadows, self.extent.texels);
+        let actual = self.limits.max_storage_buffer_binding_size.min(self.limits.max_buffer_size);
+        if required <= actual {
+            return Ok(());
+        }
+        Err(Error::Limit {
+            what: format!("the sky in {} directions", self.shadows.directions),
+            limit: "max_storage_buffer_binding_size",
+            required,
+            actual,
+            remedy: "take fewer directions or a smaller atlas, or create the device with higher limits",
+        })
+    }
+
+    /// Says whether the next frame looks at the sky.
+    fn prepare_sky(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, subject: &Subject<'_>) -> bool {
+        let stages = (&self.stages.visibility, &self.stages.shadow);
+        let texels = self.extent.texels;
+        if self.sky.allocate(device, stages, &self.buffers, &self.shadows, texels) {
+            self.bind_gather(device);
+        }
+        self.sky.prepare(queue, subject, &self.shadows)
     }
 
     /// Makes the kernel table anew where the medium changed or the body outgrew it.
@@ -293,8 +454,4 @@ impl Body {
         self.pending.insert(StageSet::from_stage_on(Stage::Scatter));
         self.scatter_stale = false;
     }
-}
-
-fn begin<'a>(encoder: &'a mut wgpu::CommandEncoder, label: &str) -> wgpu::ComputePass<'a> {
-    encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some(label), timestamp_writes: None })
 }

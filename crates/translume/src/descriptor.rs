@@ -1,7 +1,7 @@
 //! What a body is made of.
 
 use crate::bounds::WEIGHT_SLACK;
-use crate::{Error, Medium, Method, Profile};
+use crate::{Error, Medium, Method, Profile, ShadowOptions};
 use translume_mesh::{Atlas, Influence, Mesh, Skin};
 
 /// What a body is made of and how it is computed.
@@ -21,12 +21,12 @@ pub struct BodyDescriptor<'a> {
     pub mm_per_unit: f32,
     /// Whether each triangle keeps its own normal instead of the smooth vertex normals.
     pub flat_normals: bool,
-    /// Width of a depth map in texels, from 16 to the device's `max_texture_dimension_2d`.
-    pub shadow_resolution: u32,
+    /// How finely shadows are computed.
+    pub shadows: ShadowOptions,
 }
 
 impl<'a> BodyDescriptor<'a> {
-    /// Defaults for everything but the shape: marble, normalised dipole, tree, metres, smooth normals, depth maps of 1024².
+    /// Defaults for everything but the shape: marble, normalised dipole, tree, metres, smooth normals.
     #[must_use]
     pub fn new(mesh: &'a Mesh, atlas: &'a Atlas) -> Self {
         Self {
@@ -37,7 +37,7 @@ impl<'a> BodyDescriptor<'a> {
             method: Method::default(),
             mm_per_unit: 1000.0,
             flat_normals: false,
-            shadow_resolution: 1024,
+            shadows: ShadowOptions::default(),
         }
     }
 
@@ -52,11 +52,7 @@ impl<'a> BodyDescriptor<'a> {
             let problem = format!("{} mm per unit", self.mm_per_unit);
             return fail(problem, "give a finite scale above 0");
         }
-        if !(16..=limit).contains(&self.shadow_resolution) {
-            let problem = format!("depth maps of {}²", self.shadow_resolution);
-            return fail(problem, "give a resolution between 16 and the device's max_texture_dimension_2d");
-        }
-        Ok(())
+        self.shadows.validate(limit)
     }
 }
 

@@ -54,6 +54,16 @@ pub enum Error {
         /// What to do about it.
         remedy: &'static str,
     },
+    /// A number of [`ShadowOptions`](crate::ShadowOptions) cannot be.
+    #[error("shadows: {field} is {value}, but must be {range}")]
+    Shadow {
+        /// Which number.
+        field: &'static str,
+        /// Its value.
+        value: u32,
+        /// What it may be.
+        range: String,
+    },
     /// An input of a frame cannot be.
     #[error("frame: {problem}; {remedy}")]
     Frame {

@@ -1,10 +1,7 @@
-//! What changes from frame to frame, and its translation into uniforms.
+//! What changes from frame to frame.
 
-use crate::layout::{
-    AmbientLayout, GatherLayout, LightLayout, MAX_AMBIENTS, MAX_LIGHTS, MAX_VIEWS, NO_SHADOW,
-};
-use crate::stages::shadow::{self, View};
-use crate::{Error, Light, light};
+use crate::layout::{MAX_AMBIENTS, MAX_LIGHTS};
+use crate::{Error, Light, Region};
 use glam::{Mat4, Vec3};
 use translume_mesh::{Warp, rig};
 
@@ -19,6 +16,17 @@ pub struct Frame<'a> {
     pub warp: Warp,
     /// The light.
     pub lighting: Lighting<'a>,
+    /// What else casts shadows on the body: the host draws it, see [`Body::encode_with`](crate::Body::encode_with).
+    pub casters: Option<Casters>,
+}
+
+/// Opaque things of the host that cast shadows on a body.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Casters {
+    /// A box around them, world units. What lies beyond it casts no shadow.
+    pub bounds: Region,
+    /// Another number than in the last frame says that they have changed.
+    pub revision: u64,
 }
 
 /// The pose of a body.
@@ -50,8 +58,12 @@ impl<'a> From<&'a rig::Pose> for Deformation<'a> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Lighting<'a> {
-    /// Any mix of lights; up to 64 directional, point and spot lights and 8 ambient ones.
+    /// Any mix of lights: up to 64 directional, point, spot and area lights, 8 ambient ones, and environments without limit.
     Lights(&'a [Light]),
+    /// The host's own: irradiance E that entered each texel, four floats (RGB and one unread) in the order of the atlas' texels. It is
+    /// copied in [`Body::encode`](crate::Body::encode), so the host may write it in the same submission, from the positions and normals
+    /// of [`Body::outputs`](crate::Body::outputs) after [`Body::encode_through`](crate::Body::encode_through). The buffer needs the usage `COPY_SRC`.
+    Irradiance(&'a wgpu::Buffer),
 }
 
 impl Default for Frame<'_> {
@@ -62,6 +74,7 @@ impl Default for Frame<'_> {
             deformation: Deformation::Rest,
             warp: Warp::default(),
             lighting: Lighting::Lights(&[]),
+            casters: None,
         }
     }
 }
@@ -71,9 +84,11 @@ pub(crate) fn validate_lights(lights: &[Light]) -> Result<(), Error> {
     for (index, light) in lights.iter().enumerate() {
         light.validate(index)?;
     }
-    let ambients = lights.iter().filter(|light| matches!(light, Light::Ambient(_))).count();
+    let count = |of: fn(&Light) -> bool| lights.iter().filter(|light| of(light)).count();
+    let ambients = count(|light| matches!(light, Light::Ambient(_)));
+    let skies = count(|light| matches!(light, Light::Environment(_)));
     let limits = [
-        (lights.len() - ambients, MAX_LIGHTS, "directional, point and spot"),
+        (lights.len() - ambients - skies, MAX_LIGHTS, "directional, point, spot and area"),
         (ambients, MAX_AMBIENTS, "ambient"),
     ];
     for (count, limit, kind) in limits {
@@ -98,6 +113,38 @@ pub(crate) fn validate_model(model: Mat4) -> Result<(), Error> {
     })
 }
 
+/// Corners of the box around the host's casters, mm.
+pub(crate) fn caster_corners(casters: &Casters, scale: f32) -> Result<[Vec3; 8], Error> {
+    let [low, high] = [casters.bounds.low, casters.bounds.high].map(|corner| Vec3::from(corner) * scale);
+    if !(low.is_finite() && high.is_finite() && low.cmple(high).all()) {
+        return Err(Error::Frame {
+            problem: format!("casters lie between {:?} and {:?}", casters.bounds.low, casters.bounds.high),
+            remedy: "give finite corners, the lower one first",
+        });
+    }
+    Ok(std::array::from_fn(|k| {
+        Vec3::select(glam::BVec3::new(k & 1 > 0, k & 2 > 0, k & 4 > 0), high, low)
+    }))
+}
+
+/// Checks that irradiance can be copied for this many texels.
+pub(crate) fn validate_irradiance(buffer: &wgpu::Buffer, texels: u32) -> Result<(), Error> {
+    let required = 16 * u64::from(texels);
+    if buffer.size() < required {
+        return Err(Error::Frame {
+            problem: format!("irradiance has {} bytes, but {texels} texels take {required}", buffer.size()),
+            remedy: "give four floats for each texel of the atlas",
+        });
+    }
+    if !buffer.usage().contains(wgpu::BufferUsages::COPY_SRC) {
+        return Err(Error::Frame {
+            problem: "irradiance cannot be copied".to_owned(),
+            remedy: "create the buffer with the usage COPY_SRC",
+        });
+    }
+    Ok(())
+}
+
 /// Checks that a pose has a place: `corners` of the box around it, mm.
 pub(crate) fn validate_corners(corners: &[Vec3; 8]) -> Result<(), Error> {
     if corners.iter().all(|corner| corner.is_finite()) {
@@ -111,103 +158,6 @@ pub(crate) fn validate_corners(corners: &[Vec3; 8]) -> Result<(), Error> {
 
 pub(crate) fn diagonal(corners: &[Vec3; 8]) -> f32 {
     corners[0].distance(corners[7])
-}
-
-/// What the gather needs of a body beside the lights.
-pub(crate) struct GatherBody<'a> {
-    pub texels: u32,
-    pub flat_normals: bool,
-    pub eta: f32,
-    pub winding: f32,
-    pub mm_per_unit: f32,
-    pub corners: &'a [Vec3; 8],
-    pub shadow_resolution: u32,
-}
-
-/// Lights and their depth maps' views, as WGSL reads them.
-pub(crate) fn gather_layout(
-    lights: &[Light],
-    body: &GatherBody<'_>,
-) -> Result<(Box<GatherLayout>, Vec<View>), Error> {
-    let mut layout: Box<GatherLayout> = bytemuck::zeroed_box();
-    layout.texel_count = body.texels;
-    layout.flat_normals = u32::from(body.flat_normals);
-    layout.eta = body.eta;
-    layout.winding = body.winding;
-    let mut views = Vec::new();
-    for light in lights {
-        if let Light::Ambient(ambient) = light {
-            layout.ambients[layout.ambient_count as usize] = ambient_layout(ambient, body.eta);
-            layout.ambient_count += 1;
-            continue;
-        }
-        let own = shadow::views(light, body.mm_per_unit, body.corners, body.shadow_resolution);
-        let first = if own.is_empty() { NO_SHADOW } else { views.len() as u32 };
-        layout.lights[layout.light_count as usize] =
-            light_layout(light, body.mm_per_unit, first, own.len() as u32);
-        layout.light_count += 1;
-        views.extend(own);
-    }
-    if views.len() > MAX_VIEWS {
-        return Err(Error::Frame {
-            problem: format!("{} depth maps, but at most {MAX_VIEWS} fit", views.len()),
-            remedy: "a point light near the body takes six: switch some shadows off",
-        });
-    }
-    for (slot, view) in layout.views.iter_mut().zip(&views) {
-        slot.matrix = view.matrix.to_cols_array_2d();
-        slot.texel = view.texel;
-        slot.perspective = f32::from(u8::from(view.perspective));
-    }
-    Ok((layout, views))
-}
-
-fn light_layout(light: &Light, scale: f32, first_view: u32, view_count: u32) -> LightLayout {
-    // Intensity over distance² in world units is intensity·scale² over distance² in millimetres.
-    let in_mm = |intensity: [f32; 3]| intensity.map(|i| i * scale * scale);
-    let (axis, [cone_scale, cone_offset]) = match light {
-        Light::Spot(light) => (Vec3::from(light.direction).normalize(), light.falloff()),
-        // As bright in every direction.
-        _ => (Vec3::ZERO, [0.0, 1.0]),
-    };
-    let (kind, vector, colour, region) = match light {
-        Light::Directional(light) => {
-            (0, Vec3::from(light.to_light).normalize().to_array(), light.irradiance, light.region)
-        }
-        Light::Point(light) => (1, light.position.map(|x| x * scale), in_mm(light.intensity), light.region),
-        Light::Spot(light) => (1, light.position.map(|x| x * scale), in_mm(light.intensity), light.region),
-        Light::Ambient(light) => (2, light.axis, light.radiance, None),
-    };
-    // Far corners stay finite, so that infinity minus infinity never arises.
-    let bound = |x: f32| (x * scale).clamp(-1e30, 1e30);
-    LightLayout {
-        vector,
-        kind,
-        colour,
-        first_view,
-        region_low: region.map_or([-1e30; 3], |region| region.low.map(bound)),
-        view_count,
-        region_high: region.map_or([1e30; 3], |region| region.high.map(bound)),
-        cone_scale,
-        axis: axis.to_array(),
-        cone_offset,
-    }
-}
-
-fn ambient_layout(ambient: &crate::AmbientLight, eta: f32) -> AmbientLayout {
-    let values: [f32; 33] = light::ambient_table(ambient.half_angle, eta);
-    let mut table = [[0.0; 4]; 9];
-    for (k, value) in values.into_iter().enumerate() {
-        table[k / 4][k % 4] = value;
-    }
-    let axis = Vec3::from(ambient.axis).normalize_or(Vec3::Y).to_array();
-    AmbientLayout {
-        radiance: ambient.radiance,
-        cone_cosine: ambient.half_angle.cos(),
-        axis,
-        padding: 0,
-        table,
-    }
 }
 
 #[cfg(test)]

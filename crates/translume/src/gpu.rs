@@ -124,11 +124,50 @@ const WORKGROUP: u32 = 64;
 /// WebGPU's default limit of workgroups along one axis.
 const WORKGROUPS_PER_ROW: u32 = 65_535;
 
-/// One invocation per item, in rows where one row is too long.
-pub(crate) fn dispatch(pass: &mut wgpu::ComputePass<'_>, items: u32) {
-    let workgroups = items.div_ceil(WORKGROUP);
-    let rows = workgroups.div_ceil(WORKGROUPS_PER_ROW).max(1);
-    pass.dispatch_workgroups(workgroups.div_ceil(rows), rows, 1);
+/// How much was recorded.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Work {
+    /// Draws of the body into depth maps, one per view. What the host draws there is not counted.
+    pub draws: u32,
+    /// Dispatches of compute work.
+    pub dispatches: u32,
+}
+
+/// A compute pass that counts.
+pub(crate) struct Pass<'a> {
+    pass: wgpu::ComputePass<'a>,
+    work: &'a mut Work,
+}
+
+impl<'a> Pass<'a> {
+    pub fn begin(encoder: &'a mut wgpu::CommandEncoder, label: &str, work: &'a mut Work) -> Self {
+        let pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+            label: Some(label),
+            timestamp_writes: None,
+        });
+        Self { pass, work }
+    }
+
+    pub fn set_pipeline(&mut self, pipeline: &wgpu::ComputePipeline) {
+        self.pass.set_pipeline(pipeline);
+    }
+
+    /// Group 0.
+    pub fn set_bind_group(&mut self, group: &wgpu::BindGroup, offsets: &[u32]) {
+        self.pass.set_bind_group(0, group, offsets);
+    }
+
+    /// One invocation per item, in rows where one row is too long.
+    pub fn dispatch(&mut self, items: u32) {
+        let workgroups = items.div_ceil(WORKGROUP);
+        let rows = workgroups.div_ceil(WORKGROUPS_PER_ROW).max(1);
+        self.dispatch_workgroups(workgroups.div_ceil(rows), rows);
+    }
+
+    pub fn dispatch_workgroups(&mut self, x: u32, y: u32) {
+        self.pass.dispatch_workgroups(x, y, 1);
+        self.work.dispatches += 1;
+    }
 }
 
 /// A buffer with this content. An empty one still gets room for a few bytes, because bindings may not be empty.

@@ -5,8 +5,12 @@ use bytemuck::{Pod, Zeroable};
 
 /// Most lights of one frame that are not ambient.
 pub(crate) const MAX_LIGHTS: usize = 64;
-/// Most depth maps of one frame; a point light near its body takes six.
-pub(crate) const MAX_VIEWS: usize = 64;
+/// Most depth maps of one frame; a point light near its body takes six, an area light some for each of its points.
+pub(crate) const MAX_VIEWS: usize = 256;
+/// Most points of all area lights of one frame.
+pub(crate) const MAX_EMITTERS: usize = 256;
+/// Most directions towards the sky.
+pub(crate) const MAX_DIRECTIONS: usize = crate::ShadowOptions::MAX_DIRECTIONS as usize;
 /// Most ambient lights of one frame.
 pub(crate) const MAX_AMBIENTS: usize = 8;
 /// Marks a light without a depth map.
@@ -55,6 +59,10 @@ pub(crate) struct LightLayout {
     pub cone_scale: f32,
     pub axis: [f32; 3],
     pub cone_offset: f32,
+    pub half_right: [f32; 3],
+    pub first_emitter: u32,
+    pub half_up: [f32; 3],
+    pub emitter_count: u32,
 }
 
 #[repr(C)]
@@ -63,7 +71,7 @@ pub(crate) struct AmbientLayout {
     pub radiance: [f32; 3],
     pub cone_cosine: f32,
     pub axis: [f32; 3],
-    pub padding: u32,
+    pub shadow: u32,
     pub table: [[f32; 4]; 9],
 }
 
@@ -71,10 +79,30 @@ pub(crate) struct AmbientLayout {
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub(crate) struct ShadowViewLayout {
     pub matrix: [[f32; 4]; 4],
+    pub tile: [f32; 3],
+    pub layer: u32,
     pub texel: f32,
     pub perspective: f32,
     pub padding0: f32,
     pub padding1: f32,
+}
+
+/// Eight directions of the visibility stage.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub(crate) struct DirectionsLayout {
+    pub word: u32,
+    pub padding: [u32; 3],
+    pub views: [ShadowViewLayout; 8],
+}
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub(crate) struct SkyLayout {
+    pub direction: [f32; 3],
+    pub padding0: u32,
+    pub radiance: [f32; 3],
+    pub padding1: u32,
 }
 
 #[repr(C)]
@@ -86,11 +114,15 @@ pub(crate) struct GatherLayout {
     pub flat_normals: u32,
     pub eta: f32,
     pub winding: f32,
-    pub padding0: u32,
-    pub padding1: u32,
+    pub filter_side: u32,
+    pub direction_count: u32,
+    pub open_sky: [[f32; 4]; 9],
+    pub shadowed_sky: [[f32; 4]; 9],
     pub lights: [LightLayout; MAX_LIGHTS],
-    pub views: [ShadowViewLayout; MAX_VIEWS],
     pub ambients: [AmbientLayout; MAX_AMBIENTS],
+    pub emitters: [[f32; 4]; MAX_EMITTERS],
+    pub views: [ShadowViewLayout; MAX_VIEWS],
+    pub sky: [SkyLayout; MAX_DIRECTIONS],
 }
 
 #[repr(C)]
@@ -225,11 +257,17 @@ mod tests {
                 region_high,
                 cone_scale,
                 axis,
-                cone_offset
+                cone_offset,
+                half_right,
+                first_emitter,
+                half_up,
+                emitter_count
             ]
         );
-        check!(GATHER, "Ambient", AmbientLayout, [radiance, cone_cosine, axis, padding, table]);
-        check!(GATHER, "ShadowView", ShadowViewLayout, [matrix, texel, perspective, padding0, padding1]);
+        check!(GATHER, "Ambient", AmbientLayout, [radiance, cone_cosine, axis, shadow, table]);
+        check!(GATHER, "ShadowView", ShadowViewLayout, [matrix, tile, layer, texel, perspective]);
+        check!(GATHER, "Sky", SkyLayout, [direction, radiance]);
+        check!(VISIBILITY, "Directions", DirectionsLayout, [word, views]);
         check!(
             GATHER,
             "Gather",
@@ -241,11 +279,15 @@ mod tests {
                 flat_normals,
                 eta,
                 winding,
-                padding0,
-                padding1,
+                filter_side,
+                direction_count,
+                open_sky,
+                shadowed_sky,
                 lights,
+                ambients,
+                emitters,
                 views,
-                ambients
+                sky
             ]
         );
         check!(GATHER, "Texel", TexelLayout, [triangle, barycentric_1, barycentric_2, area_ratio]);

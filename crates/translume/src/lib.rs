@@ -31,11 +31,13 @@
 
 pub use wgpu;
 
+mod area_light;
 mod body;
 mod bounds;
 mod buffers;
 mod camera;
 mod descriptor;
+mod environment;
 mod error;
 mod frame;
 mod fresnel;
@@ -44,24 +46,32 @@ mod kernel_table;
 mod kernel_texture;
 mod layout;
 mod light;
+mod lighting;
 mod medium;
 mod pose;
 mod profile;
 pub mod readback;
+mod shadow_options;
+mod shadow_view;
 mod stages;
 
+pub use area_light::{RectangleLight, SphereLight};
 pub use body::Body;
 pub use buffers::Outputs;
 pub use camera::{Camera, LookAt};
 pub use descriptor::BodyDescriptor;
+pub use environment::EnvironmentLight;
 pub use error::Error;
-pub use frame::{Deformation, Frame, Lighting};
+pub use frame::{Casters, Deformation, Frame, Lighting};
+pub use gpu::Work;
 pub use layout::Cluster;
 pub use light::{AmbientLight, DirectionalLight, Light, PointLight, Region, SpotLight};
 pub use medium::Medium;
 pub use profile::Profile;
+pub use shadow_options::ShadowOptions;
 pub use stages::composite::{Composite, CompositeTarget, CompositeView, Gloss};
 pub use stages::scatter::Method;
+pub use stages::shadow::ShadowView;
 pub use stages::{Stage, StageSet};
 
 use std::sync::Arc;
@@ -106,7 +116,8 @@ pub fn largest_atlas(limits: &wgpu::Limits) -> u32 {
 
 fn check_limits(limits: &wgpu::Limits) -> Result<(), Error> {
     let needs = [
-        ("max_storage_buffers_per_shader_stage", 7, limits.max_storage_buffers_per_shader_stage),
+        ("max_storage_buffers_per_shader_stage", 8, limits.max_storage_buffers_per_shader_stage),
+        ("max_uniform_buffer_binding_size", size_of::<layout::GatherLayout>() as u32, limits.max_uniform_buffer_binding_size as u32),
         ("max_compute_invocations_per_workgroup", 64, limits.max_compute_invocations_per_workgroup),
         ("max_compute_workgroups_per_dimension", 65_535, limits.max_compute_workgroups_per_dimension),
         ("max_storage_textures_per_shader_stage", 1, limits.max_storage_textures_per_shader_stage),

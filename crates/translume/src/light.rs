@@ -1,6 +1,7 @@
 //! Lights, in the host's world units.
 
-use crate::{Error, fresnel};
+use crate::{EnvironmentLight, Error, RectangleLight, SphereLight, fresnel};
+use glam::Vec3;
 
 /// A source of light. Positions are in world units; colours are linear RGB.
 ///
@@ -15,8 +16,14 @@ pub enum Light {
     Point(PointLight),
     /// Light from a point into a cone.
     Spot(SpotLight),
-    /// The same radiance from every direction of a cone, or of the whole sky. Nothing occludes it.
+    /// Light from one side of a rectangle.
+    Rectangle(RectangleLight),
+    /// Light from a ball.
+    Sphere(SphereLight),
+    /// The same radiance from every direction of a cone, or of the whole sky.
     Ambient(AmbientLight),
+    /// Light from everywhere, as spherical harmonics.
+    Environment(EnvironmentLight),
 }
 
 /// Parallel light.
@@ -73,6 +80,8 @@ pub struct AmbientLight {
     pub axis: [f32; 3],
     /// Half angle of the cone, radians, 0..π; π is the whole sky.
     pub half_angle: f32,
+    /// Whether the body keeps it from itself.
+    pub shadow: bool,
 }
 
 /// An axis-aligned box, world units.
@@ -125,9 +134,14 @@ impl SpotLight {
 }
 
 impl Default for AmbientLight {
-    /// The whole sky at radiance 1.
+    /// The whole sky at radiance 1, seen from everywhere.
     fn default() -> Self {
-        Self { radiance: [1.0; 3], axis: [0.0, 1.0, 0.0], half_angle: std::f32::consts::PI }
+        Self {
+            radiance: [1.0; 3],
+            axis: [0.0, 1.0, 0.0],
+            half_angle: std::f32::consts::PI,
+            shadow: false,
+        }
     }
 }
 
@@ -151,6 +165,25 @@ impl Light {
                 }
                 (light.intensity, [light.position, light.direction], Some(light.direction))
             }
+            Self::Rectangle(light) => {
+                let [right, up] = [light.half_right, light.half_up].map(Vec3::from);
+                let area = right.cross(up).length();
+                // A hundredth of a right angle is a slip of the pen, not a parallelogram.
+                if !(area > 0.0 && right.dot(up).abs() <= 0.02 * area) {
+                    return fail(
+                        format!("has edges {:?} and {:?}", light.half_right, light.half_up),
+                        "give two vectors that are not zero, at a right angle",
+                    );
+                }
+                (light.radiance, [light.center; 2], None)
+            }
+            Self::Sphere(light) => {
+                if !(light.radius > 0.0 && light.radius.is_finite()) {
+                    return fail(format!("has radius {}", light.radius), "give a finite radius above 0");
+                }
+                (light.radiance, [light.center; 2], None)
+            }
+            Self::Environment(_) => return Ok(()),
             Self::Ambient(light) => (light.radiance, [light.axis, [light.half_angle; 3]], Some(light.axis)),
         };
         if colour.iter().any(|c| !(0.0..=f32::MAX).contains(c)) {
@@ -238,6 +271,14 @@ mod tests {
             assert!(message.contains("light 5 has a cone"), "{message}");
         }
         assert!(Light::Spot(SpotLight::default()).validate(0).is_ok());
+        let skewed = RectangleLight { half_up: [0.5, 1.0, 0.0], ..Default::default() };
+        let flat = RectangleLight { half_up: [0.0; 3], ..Default::default() };
+        for light in [skewed, flat] {
+            assert!(Light::Rectangle(light).validate(0).unwrap_err().to_string().contains("right angle"));
+        }
+        assert!(Light::Rectangle(RectangleLight::default()).validate(0).is_ok());
+        let nothing = Light::Sphere(SphereLight { radius: 0.0, ..Default::default() });
+        assert!(nothing.validate(0).unwrap_err().to_string().contains("radius"));
         let aimless = Light::Spot(SpotLight { direction: [0.0; 3], ..Default::default() });
         assert!(aimless.validate(0).is_err());
         assert!(Light::Ambient(AmbientLight::default()).validate(0).is_ok());

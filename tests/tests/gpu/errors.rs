@@ -152,7 +152,7 @@ fn bad_bodies_are_refused_by_name() {
         let message = Fixture::try_new(&sphere(), |d| d.mm_per_unit = scale).err().unwrap().to_string();
         assert!(message.contains("mm per unit"), "[{}] {message}", gpu().adapter_name);
     }
-    let message = Fixture::try_new(&sphere(), |d| d.shadow_resolution = 8).err().unwrap().to_string();
+    let message = Fixture::try_new(&sphere(), |d| d.shadows.resolution = 8).err().unwrap().to_string();
     assert!(message.contains("depth maps"), "[{}] {message}", gpu().adapter_name);
-    Fixture::try_new(&sphere(), |d| d.shadow_resolution = 16).map(|_| ()).unwrap();
+    Fixture::try_new(&sphere(), |d| d.shadows.resolution = 16).map(|_| ()).unwrap();
 }

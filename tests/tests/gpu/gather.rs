@@ -37,7 +37,7 @@ fn lights(shadow: bool) -> [Light; 4] {
 }
 
 fn cone() -> [Light; 1] {
-    [Light::Ambient(AmbientLight { radiance: [1.0, 0.5, 0.25], axis: [0.3, 2.0, 0.5], half_angle: 0.3 })]
+    [Light::Ambient(AmbientLight { radiance: [1.0, 0.5, 0.25], axis: [0.3, 2.0, 0.5], half_angle: 0.3, shadow: false })]
 }
 
 fn pose(model: &Model) -> Pose {
@@ -58,7 +58,7 @@ impl Case {
         let mut fixture = Fixture::new(&self.model, |d| {
             d.medium = Medium { ior: self.ior, ..Medium::MARBLE };
             d.flat_normals = self.flat;
-            d.shadow_resolution = 512;
+            d.shadows.resolution = 512;
         });
         fixture.run(&pose(&self.model).frame(lights));
         fixture
@@ -247,4 +247,45 @@ fn live_area_follows_joints_and_warps() {
     };
     holds(total_area(&limb(), &pose(4.0), &pose(4.0)));
     notices(total_area(&limb(), &pose(4.0), &pose(5.0)));
+}
+
+#[test]
+#[ignore = "scratch"]
+fn scratch() {
+    let size: u32 = std::env::var("SIZE").map_or(512, |s| s.parse().unwrap());
+    let mut models = vec![("creature", Model::new(translume_mesh::builtin::creature(), size))];
+    if let Some(folder) = std::env::var_os("TRANSLUME_MODELS") {
+        let mut mesh = translume_mesh::load::load(&std::path::Path::new(&folder).join("stanford-bunny.obj")).unwrap().mesh;
+        let s = 100.0 / mesh.diagonal();
+        for p in &mut mesh.positions { *p = p.map(|x| x * s); }
+        models.push(("bunny", Model::new(mesh, size)));
+    }
+    for (name, model) in &models {
+        let b = model.mesh.positions.iter().fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(l, h), p| (l.min(Vec3::from(*p)), h.max(Vec3::from(*p))));
+        let c = (b.0 + b.1) * 0.5;
+        let d = b.0.distance(b.1);
+        let all = [
+            ("directional", Light::Directional(DirectionalLight { to_light: [0.3, 0.9, -0.2], ..Default::default() })),
+            ("point", Light::Point(PointLight { position: (c + Vec3::new(-0.5, 0.6, 0.7) * d).to_array(), ..Default::default() })),
+            ("point near", Light::Point(PointLight { position: (c + Vec3::new(-0.2, 0.4, 0.35) * d).to_array(), ..Default::default() })),
+            ("spot", Light::Spot(SpotLight { position: (c + Vec3::new(0.5, 0.8, 0.7) * d).to_array(), direction: [-0.5, -0.8, -0.7], ..Default::default() })),
+        ];
+        let pose = Pose::rest(model.mesh.targets.len());
+        let mut fixture = Fixture::new(model, |d| d.medium = Medium::MARBLE);
+        for (kind, light) in all {
+            let twin = luminous(&fixture.twin_sources(&pose, &[light], 4));
+            for res in [512, 1024, 2048] {
+                fixture.body.set_shadows(translume::ShadowOptions { resolution: res, ..Default::default() }).unwrap();
+                let start = std::time::Instant::now();
+                fixture.light(&pose.frame(&[light]));
+                let gpu = luminous(&fixture.sources());
+                let ms = start.elapsed().as_millis();
+                let g: Vec<f64> = gpu.iter().map(|e| e[0]).collect();
+                let t: Vec<f64> = twin.iter().map(|e| e[0]).collect();
+                let m = translume_reference::metrics::compare(&g, &t, None).unwrap();
+                let worse = g.iter().zip(&t).filter(|(g, t)| (**g - **t).abs() > 0.5 * m.p99 / m.relative_p99).count();
+                println!("{name} {kind} {res}: rmse {:.4} rms {:.4} bias {:+.4} bad {:.4} {ms} ms", m.relative_rmse, relative_rmse(&gpu, &twin), m.bias, worse as f64 / g.len() as f64);
+            }
+        }
+    }
 }

@@ -97,7 +97,7 @@ fn bounded(row: &Row, model: &Arc<Model>) -> Check {
     let atlas = model.atlas.size;
     let mut fixture = Fixture::new(model, |d| {
         (d.medium, d.mm_per_unit) = (row.medium, row.mm_per_unit);
-        d.shadow_resolution = 64;
+        d.shadows.resolution = 64;
     });
     fixture.run(&Pose { model: row.model, ..Pose::rest(0) }.frame(&row.lights));
     let (sources, exitance) = (fixture.sources(), fixture.exitance());
@@ -153,7 +153,7 @@ fn an_excess_is_noticed() {
 /// Many poses leave nothing behind: the first pose comes back bit for bit.
 #[test]
 fn many_poses_do_not_drift() {
-    let mut fixture = Fixture::new(&creature(), |d| d.shadow_resolution = 16);
+    let mut fixture = Fixture::new(&creature(), |d| d.shadows.resolution = 16);
     let lights = [Light::Directional(DirectionalLight { shadow: false, ..Default::default() })];
     let mut show = |weight: f32| {
         let pose = Pose { weights: vec![weight], ..Pose::rest(1) };
@@ -165,7 +165,7 @@ fn many_poses_do_not_drift() {
     }
     show(0.25);
     let again = fixture.exitance();
-    let mut fresh = Fixture::new(&creature(), |d| d.shadow_resolution = 16);
+    let mut fresh = Fixture::new(&creature(), |d| d.shadows.resolution = 16);
     fresh.run(&Pose { weights: vec![0.25], ..Pose::rest(1) }.frame(&lights));
     assert_eq!(again, fresh.exitance(), "[{}]", gpu().adapter_name);
 }

@@ -12,7 +12,7 @@ const RESOLUTION: usize = 64;
 /// Depth of a sphere of this radius seen from above, at the pixels inside nine tenths of it. The view covers the body's box of
 /// 100 mm and four texels around; its depth reaches 1 % of the box beyond it on either side.
 fn depth_error(radius: f64) -> f64 {
-    let mut fixture = Fixture::new(&sphere(), |d| d.shadow_resolution = RESOLUTION as u32);
+    let mut fixture = Fixture::new(&sphere(), |d| d.shadows.resolution = RESOLUTION as u32);
     let sun = Light::Directional(DirectionalLight { to_light: [0.0, 3.0, 0.0], ..Default::default() });
     fixture.run(&Pose::rest(0).frame(&[sun]));
     let map: Vec<f32> =
@@ -47,7 +47,7 @@ fn two_sheets(shadow: bool, light: &Light) -> (Fixture, [Light; 1]) {
         cuboids(&[([-50.0, 0.0, -50.0], [50.0, 10.0, 50.0]), ([-20.0, 30.0, -20.0], [20.0, 32.0, 20.0])]);
     let mut fixture = Fixture::new(&model, |d| {
         d.medium = Medium { ior: 1.0, ..Medium::MARBLE };
-        d.shadow_resolution = 512;
+        d.shadows.resolution = 512;
     });
     let mut light = *light;
     match &mut light {

@@ -4,7 +4,7 @@
 //! twin   `translume_reference::cluster`            WGSL    `cluster.wgsl`
 
 use crate::buffers::Buffers;
-use crate::gpu::{self, READ, UNIFORM_ARRAY, UNIFORM_STRIDE, WRITE};
+use crate::gpu::{self, Pass, READ, UNIFORM_ARRAY, UNIFORM_STRIDE, WRITE};
 use crate::layout::LevelLayout;
 
 pub(crate) struct ClusterStage {
@@ -87,11 +87,11 @@ impl ClusterStage {
         gpu::bind(device, "cluster", &self.layout, &resources)
     }
 
-    pub fn encode(&self, pass: &mut wgpu::ComputePass<'_>, group: &wgpu::BindGroup, tree: &Tree) {
+    pub fn encode(&self, pass: &mut Pass<'_>, group: &wgpu::BindGroup, tree: &Tree) {
         for level in 1..tree.counts.len() {
             pass.set_pipeline(if level == 1 { &self.from_texels } else { &self.from_clusters });
-            pass.set_bind_group(0, group, &[(level - 1) as u32 * UNIFORM_STRIDE as u32]);
-            gpu::dispatch(pass, tree.counts[level]);
+            pass.set_bind_group(group, &[(level - 1) as u32 * UNIFORM_STRIDE as u32]);
+            pass.dispatch(tree.counts[level]);
         }
     }
 }

@@ -4,7 +4,7 @@
 //! twin   `translume_reference::deform`                                           WGSL    `deform.wgsl`, `normals.wgsl`
 
 use crate::buffers::Buffers;
-use crate::gpu::{self, READ, UNIFORM, WRITE};
+use crate::gpu::{self, Pass, READ, UNIFORM, WRITE};
 
 pub(crate) struct Deform {
     pose_layout: wgpu::BindGroupLayout,
@@ -59,19 +59,19 @@ impl Deform {
     /// A body that deforms gets its normals from the deformed triangles; a rigid one keeps those of its file.
     pub fn encode(
         &self,
-        pass: &mut wgpu::ComputePass<'_>,
+        pass: &mut Pass<'_>,
         groups: &DeformGroups,
         vertices: u32,
         skinned: bool,
         deforms: bool,
     ) {
         pass.set_pipeline(if skinned { &self.skinned } else { &self.rigid });
-        pass.set_bind_group(0, &groups.pose, &[]);
-        gpu::dispatch(pass, vertices);
+        pass.set_bind_group(&groups.pose, &[]);
+        pass.dispatch(vertices);
         if deforms {
             pass.set_pipeline(&self.recompute_normals);
-            pass.set_bind_group(0, &groups.normals, &[]);
-            gpu::dispatch(pass, vertices);
+            pass.set_bind_group(&groups.normals, &[]);
+            pass.dispatch(vertices);
         }
     }
 }

@@ -1,10 +1,10 @@
 //! Gather: every light → position, normal, live area and irradiance of every texel.
 //!
-//! reads  texels, triangles, positions, normals, lights, depth maps      writes  texel positions, normals, irradiance
+//! reads  texels, triangles, positions, normals, lights, depth maps, visibility      writes  texel positions, normals, irradiance
 //! twin   `translume_reference::gather`                                  WGSL    `gather.wgsl`
 
 use crate::buffers::Buffers;
-use crate::gpu::{self, COMPARISON, DEPTH_MAPS, READ, UNIFORM, WRITE};
+use crate::gpu::{self, Pass, COMPARISON, DEPTH_MAPS, READ, UNIFORM, WRITE};
 use crate::stages::shadow::DepthMaps;
 
 pub(crate) struct Gather {
@@ -14,19 +14,28 @@ pub(crate) struct Gather {
 
 impl Gather {
     pub fn new(device: &wgpu::Device) -> Self {
-        let types = [UNIFORM, READ, READ, READ, READ, WRITE, WRITE, WRITE, DEPTH_MAPS, COMPARISON];
+        let types = [UNIFORM, READ, READ, READ, READ, READ, WRITE, WRITE, WRITE, DEPTH_MAPS, COMPARISON];
         let layout = gpu::layout(device, "gather", wgpu::ShaderStages::COMPUTE, &types);
         let module = gpu::module(device, translume_shaders::GATHER);
         Self { irradiance: gpu::compute_pipeline(device, &layout, &module, "irradiance"), layout }
     }
 
-    pub fn bind(&self, device: &wgpu::Device, buffers: &Buffers, depth_maps: &DepthMaps) -> wgpu::BindGroup {
+    /// `visible` where some light of the sky is shadowed.
+    pub fn bind(
+        &self,
+        device: &wgpu::Device,
+        buffers: &Buffers,
+        depth_maps: &DepthMaps,
+        visible: Option<&wgpu::Buffer>,
+    ) -> wgpu::BindGroup {
         let resources = [
             buffers.gather_uniform.as_entire_binding(),
             buffers.texels.as_entire_binding(),
             buffers.triangles.as_entire_binding(),
             buffers.positions.as_entire_binding(),
             buffers.normals.as_entire_binding(),
+            // Unread where there is none, but a binding may not be empty.
+            visible.unwrap_or(&buffers.texels).as_entire_binding(),
             buffers.texel_positions.as_entire_binding(),
             buffers.texel_normals.as_entire_binding(),
             buffers.irradiance.as_entire_binding(),
@@ -36,9 +45,9 @@ impl Gather {
         gpu::bind(device, "gather", &self.layout, &resources)
     }
 
-    pub fn encode(&self, pass: &mut wgpu::ComputePass<'_>, group: &wgpu::BindGroup, texels: u32) {
+    pub fn encode(&self, pass: &mut Pass<'_>, group: &wgpu::BindGroup, texels: u32) {
         pass.set_pipeline(&self.irradiance);
-        pass.set_bind_group(0, group, &[]);
-        gpu::dispatch(pass, texels);
+        pass.set_bind_group(group, &[]);
+        pass.dispatch(texels);
     }
 }

@@ -7,6 +7,7 @@ pub(crate) mod gather;
 pub(crate) mod resolve;
 pub(crate) mod scatter;
 pub(crate) mod shadow;
+pub(crate) mod visibility;
 
 /// A stage of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -14,7 +15,9 @@ pub(crate) mod shadow;
 pub enum Stage {
     /// Rest pose → positions and normals.
     Deform,
-    /// One depth map per shadowed light.
+    /// Depth along directions of the sky → what every texel sees of it. Only where a light of the sky is shadowed.
+    Visibility,
+    /// Depth maps of shadowed lights.
     Shadow,
     /// Lights → irradiance per texel.
     Gather,
@@ -28,8 +31,15 @@ pub enum Stage {
 
 impl Stage {
     /// Every stage, in the order light flows.
-    pub const ALL: [Self; 6] =
-        [Self::Deform, Self::Shadow, Self::Gather, Self::Cluster, Self::Scatter, Self::Resolve];
+    pub const ALL: [Self; 7] = [
+        Self::Deform,
+        Self::Visibility,
+        Self::Shadow,
+        Self::Gather,
+        Self::Cluster,
+        Self::Scatter,
+        Self::Resolve,
+    ];
 }
 
 /// A set of stages.
@@ -60,6 +70,18 @@ impl StageSet {
         self.0 == 0
     }
 
+    pub(crate) fn set(&mut self, stage: Stage, member: bool) {
+        self.0 = self.0 & !(1 << stage as u8) | u8::from(member) << stage as u8;
+    }
+
+    /// Takes out the stages up to and including `last`.
+    pub(crate) fn take_through(&mut self, last: Stage) -> Self {
+        let later = Self::from_stage_on(last).0 & !(1 << last as u8);
+        let taken = Self(self.0 & !later);
+        self.0 &= later;
+        taken
+    }
+
     pub(crate) fn insert(&mut self, other: Self) {
         self.0 |= other.0;
     }
@@ -68,6 +90,7 @@ impl StageSet {
 /// The pipelines of every stage that a frame records.
 pub(crate) struct Stages {
     pub deform: deform::Deform,
+    pub visibility: visibility::Visibility,
     pub shadow: shadow::Shadow,
     pub gather: gather::Gather,
     pub cluster: cluster::ClusterStage,
@@ -79,6 +102,7 @@ impl Stages {
     pub fn new(device: &wgpu::Device) -> Self {
         Self {
             deform: deform::Deform::new(device),
+            visibility: visibility::Visibility::new(device),
             shadow: shadow::Shadow::new(device),
             gather: gather::Gather::new(device),
             cluster: cluster::ClusterStage::new(device),

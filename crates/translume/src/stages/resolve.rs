@@ -3,7 +3,7 @@
 //! reads  exitance per texel, which texel fills which pixel      writes  the exitance texture
 //! twin   a look-up per pixel, in the tests                      WGSL    `resolve.wgsl`
 
-use crate::gpu::{self, READ};
+use crate::gpu::{self, Pass, READ};
 
 pub(crate) struct Resolve {
     layout: wgpu::BindGroupLayout,
@@ -46,9 +46,9 @@ impl Resolve {
         gpu::bind(device, "resolve", &self.layout, &resources)
     }
 
-    pub fn encode(&self, pass: &mut wgpu::ComputePass<'_>, group: &wgpu::BindGroup, size: u32) {
+    pub fn encode(&self, pass: &mut Pass<'_>, group: &wgpu::BindGroup, size: u32) {
         pass.set_pipeline(&self.resolve);
-        pass.set_bind_group(0, group, &[]);
-        pass.dispatch_workgroups(size.div_ceil(8), size.div_ceil(8), 1);
+        pass.set_bind_group(group, &[]);
+        pass.dispatch_workgroups(size.div_ceil(8), size.div_ceil(8));
     }
 }

@@ -5,7 +5,7 @@
 
 use crate::Error;
 use crate::buffers::Buffers;
-use crate::gpu::{self, FLOAT_TEXTURE, READ, UNIFORM_ARRAY, UNIFORM_STRIDE, WRITE};
+use crate::gpu::{self, Pass, FLOAT_TEXTURE, READ, UNIFORM_ARRAY, UNIFORM_STRIDE, WRITE};
 use crate::kernel_table::KernelTableLayout;
 use crate::layout::ScatterLayout;
 use crate::profile::Dipole;
@@ -131,7 +131,7 @@ impl Scatter {
 
     pub fn encode(
         &self,
-        pass: &mut wgpu::ComputePass<'_>,
+        pass: &mut Pass<'_>,
         group: &wgpu::BindGroup,
         method: Method,
         texels: u32,
@@ -140,14 +140,14 @@ impl Scatter {
             Method::AllPairs => {
                 pass.set_pipeline(&self.all_pairs);
                 for k in 0..texels.div_ceil(SOURCES_PER_DISPATCH) {
-                    pass.set_bind_group(0, group, &[k * UNIFORM_STRIDE as u32]);
-                    gpu::dispatch(pass, texels);
+                    pass.set_bind_group(group, &[k * UNIFORM_STRIDE as u32]);
+                    pass.dispatch(texels);
                 }
             }
             Method::Tree { .. } => {
                 pass.set_pipeline(&self.tree);
-                pass.set_bind_group(0, group, &[0]);
-                gpu::dispatch(pass, texels);
+                pass.set_bind_group(group, &[0]);
+                pass.dispatch(texels);
             }
         }
     }
