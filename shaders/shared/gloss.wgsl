@@ -41,7 +41,9 @@ fn gloss_of(index: u32, emitter: u32, arriving: Arrival, roughness: f32, surface
     if lighting.lights[index].first_view != NO_SHADOW {
         let count = lighting.lights[index].view_count;
         let view = lighting.views[shadow_view(lighting.lights[index].first_view + emitter * count, count, arriving.to_light)];
-        lit = lit_at(view, lift(view, surface.position, surface.face, arriving.to_light, 0.0));
+        let lifted = lift(view, surface.position, surface.face, 0.0);
+        let tangent = any_perpendicular(surface.face);
+        lit = lit_at(view, lifted, depth_slope(view, lifted, tangent, cross(surface.face, tangent)));
     }
     return arriving.strength * (reflected * lit);
 }

@@ -7,6 +7,9 @@ struct Texel {
     barycentric_2: f32,
     // Rest area of the texel over that of its triangle.
     area_ratio: f32,
+    // Change of the two weights over the width and the height of a texel.
+    per_column: vec2f,
+    per_row: vec2f,
 }
 
 struct Receiver {
@@ -17,8 +20,14 @@ struct Receiver {
     face: vec3f,
     // Half the side of the texel's square, mm.
     half_width: f32,
-    tangent: vec3f,
-    bitangent: vec3f,
+    // The texel's square: weights of its middle, and its sides on the surface, mm.
+    weights: vec2f,
+    per_column: vec2f,
+    per_row: vec2f,
+    corner: vec3f,
+    side_1: vec3f,
+    side_2: vec3f,
+    partial: bool,
     // Where the texel's centre lies, which may be beyond its triangle, and its live area, mm².
     center: vec3f,
     area: f32,
@@ -44,28 +53,41 @@ fn receiver_at(index: u32) -> Receiver {
     receiver.face = safe_normalize(doubled * lighting.winding, smooth_normal);
     receiver.normal = select(smooth_normal, receiver.face, lighting.flat_normals == 1u);
     receiver.area = texel.area_ratio * 0.5 * length(doubled);
-    receiver.half_width = 0.5 * sqrt(receiver.area);
-    receiver.tangent = any_perpendicular(receiver.face);
-    receiver.bitangent = cross(receiver.face, receiver.tangent);
+    let column = (pb - pa) * texel.per_column.x + (pc - pa) * texel.per_column.y;
+    let row = (pb - pa) * texel.per_row.x + (pc - pa) * texel.per_row.y;
+    let square = length(cross(column, row));
+    receiver.half_width = 0.5 * sqrt(square);
+    receiver.weights = vec2f(texel.barycentric_1, texel.barycentric_2);
+    receiver.per_column = texel.per_column;
+    receiver.per_row = texel.per_row;
+    receiver.corner = pa;
+    receiver.side_1 = pb - pa;
+    receiver.side_2 = pc - pa;
+    receiver.partial = receiver.area < 0.98 * square;
     return receiver;
-}
-
-fn any_perpendicular(n: vec3f) -> vec3f {
-    let axis = select(vec3f(1.0, 0.0, 0.0), vec3f(0.0, 1.0, 0.0), abs(n.x) > 0.7);
-    return safe_normalize(cross(axis, n), axis);
 }
 
 // Mean over side² points of the square. A triangle that faces away is in its own shadow.
 fn lit_share(view: ShadowView, receiver: Receiver, to_light: vec3f, side: u32) -> f32 {
     if dot(receiver.face, to_light) <= 0.0 { return 0.0; }
-    let lifted = lift(view, receiver.position, receiver.face, to_light, receiver.half_width);
+    let lifted = lift(view, receiver.position, receiver.face, receiver.half_width);
+    let slope = depth_slope(view, lifted, receiver.side_1, receiver.side_2);
+    let up = lifted - receiver.position;
     var lit = 0.0;
     let count = select(side, 1u, receiver.half_width == 0.0);
     for (var v = 0u; v < count; v++) {
         for (var u = 0u; u < count; u++) {
-            let offset = (2.0 * vec2f(f32(u), f32(v)) + 1.0) / f32(count) - 1.0;
-            lit += lit_at(view, lifted + (receiver.tangent * offset.x + receiver.bitangent * offset.y) * receiver.half_width);
+            let offset = (vec2f(f32(u), f32(v)) + 0.5) / f32(count) - 0.5;
+            var w = receiver.weights + receiver.per_column * offset.x + receiver.per_row * offset.y;
+            if receiver.partial { w = clamped(w); }
+            lit += lit_at(view, receiver.corner + receiver.side_1 * w.x + receiver.side_2 * w.y + up, slope);
         }
     }
     return lit / f32(count * count);
+}
+
+// Weights of the second and third corner moved into the triangle.
+fn clamped(w: vec2f) -> vec2f {
+    let all = max(vec3f(1.0 - w.x - w.y, w.x, w.y), vec3f(0.0));
+    return all.yz / (all.x + all.y + all.z);
 }

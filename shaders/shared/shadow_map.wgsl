@@ -6,21 +6,49 @@ fn shadow_view(first: u32, count: u32, to_light: vec3f) -> u32 {
     return first;
 }
 
-// Comparing with the four nearest texels of the map reaches one texel sideways along each axis; lifted by what the surface falls
-// over that distance, a surface cannot shadow itself. The square of a texel lies in the plane of its triangle while the surface
-// curves away: a tenth of its half width is the sagitta at a radius of five half widths.
-fn lift(view: ShadowView, position: vec3f, face: vec3f, to_light: vec3f, half_width: f32) -> vec3f {
-    let depth = mix(1.0, (view.matrix * vec4f(position, 1.0)).w, view.perspective);
-    let cosine = dot(face, to_light);
-    let reach = 1.4142136 * view.texel * depth;
-    return position + face * (reach * (sqrt(max(1.0 - cosine * cosine, 0.0)) + 0.05) + 0.1 * half_width);
-}
-
-fn lit_at(view: ShadowView, point: vec3f) -> f32 {
+// Position on the map and depth of a point.
+fn on_map(view: ShadowView, point: vec3f) -> vec3f {
     let clip = view.matrix * vec4f(point, 1.0);
     let ndc = clip.xyz / clip.w;
     let uv = (ndc.xy * vec2f(0.5, -0.5) + 0.5) * view.tile.z + view.tile.xy;
-    return textureSampleCompareLevel(shadow_maps, shadow_sampler, uv, view.layer, ndc.z);
+    return vec3f(uv * f32(textureDimensions(shadow_maps).x) - 0.5, ndc.z);
+}
+
+fn lit_at(view: ShadowView, point: vec3f, slope: vec2f) -> f32 {
+    let here = on_map(view, point);
+    let base = floor(here.xy);
+    let share = here.xy - base;
+    let first = vec2i(base);
+    // Reversed depth: what lies nearer to the light is greater.
+    let depth = here.z + dot(slope, -share);
+    let a = f32(textureLoad(shadow_maps, first, view.layer, 0) <= depth);
+    let b = f32(textureLoad(shadow_maps, first + vec2i(1, 0), view.layer, 0) <= depth + slope.x);
+    let c = f32(textureLoad(shadow_maps, first + vec2i(0, 1), view.layer, 0) <= depth + slope.y);
+    let d = f32(textureLoad(shadow_maps, first + vec2i(1, 1), view.layer, 0) <= depth + slope.x + slope.y);
+    return mix(mix(a, b, share.x), mix(c, d, share.x), share.y);
+}
+
+// Depth per texel of the map over a plane through the point.
+fn depth_slope(view: ShadowView, point: vec3f, tangent: vec3f, bitangent: vec3f) -> vec2f {
+    let clip = view.matrix * vec4f(point, 1.0);
+    let t = view.matrix * vec4f(tangent, 0.0);
+    let b = view.matrix * vec4f(bitangent, 0.0);
+    // Derivatives of clip.xyz / clip.w, times clip.w².
+    let along_t = t.xyz * clip.w - clip.xyz * t.w;
+    let along_b = b.xyz * clip.w - clip.xyz * b.w;
+    let area = along_t.x * along_b.y - along_t.y * along_b.x;
+    if area == 0.0 { return vec2f(0.0); }
+    let per_ndc = vec2f(along_t.z * along_b.y - along_t.y * along_b.z, along_t.x * along_b.z - along_t.z * along_b.x) / area;
+    let texels = 0.5 * view.tile.z * f32(textureDimensions(shadow_maps).x);
+    return per_ndc * vec2f(1.0, -1.0) / texels;
+}
+
+const LIFT_MAP: f32 = 0.3;
+const LIFT_TEXEL: f32 = 0.2;
+fn lift(view: ShadowView, position: vec3f, face: vec3f, half_width: f32) -> vec3f {
+    let depth = mix(1.0, (view.matrix * vec4f(position, 1.0)).w, view.perspective);
+    let reach = 1.4142136 * view.texel * depth;
+    return position + face * (reach * LIFT_MAP + LIFT_TEXEL * half_width);
 }
 
 // Faces in the order +x, −x, +y, −y, +z, −z.

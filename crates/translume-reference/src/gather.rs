@@ -118,7 +118,17 @@ impl Gather<'_> {
                 count += 1;
             }
         }
-        (count > 0).then(|| crate::rgb::scale(sum, 1.0 / f64::from(count)))
+        if count == 0 {
+            let [per_column, per_row] = weights_per_pixel(self.atlas, texel.triangle)?;
+            let centre = texel.barycentric.map(f64::from);
+            for k in 0..n * n {
+                let [column, row] = [k % n, k / n].map(|step| (f64::from(step) + 0.5) / f64::from(n) - 0.5);
+                let weights = [0, 1].map(|w| centre[w] + per_column[w] * column + per_row[w] * row);
+                accumulate(&mut sum, lighting.irradiance(self.place(texel.triangle, clamped(weights))), 1.0);
+            }
+            count = n * n;
+        }
+        Some(crate::rgb::scale(sum, 1.0 / f64::from(count)))
     }
 }
 
@@ -164,6 +174,14 @@ impl<'a> TriangleGrid<'a> {
 
 fn corners(atlas: &Atlas, triangle: u32) -> [[f64; 2]; 3] {
     atlas.triangles[triangle as usize].map(|v| atlas.vertices[v as usize].uv.map(f64::from))
+}
+
+/// Change of a triangle's weights over the width and the height of a pixel.
+fn weights_per_pixel(atlas: &Atlas, triangle: u32) -> Option<[[f64; 2]; 2]> {
+    let uv = corners(atlas, triangle);
+    let pixel = 1.0 / f64::from(atlas.size);
+    let at = |u, v| barycentric(uv, [uv[0][0] + u, uv[0][1] + v]);
+    Some([at(pixel, 0.0)?, at(0.0, pixel)?])
 }
 
 fn barycentric([a, b, c]: [[f64; 2]; 3], p: [f64; 2]) -> Option<[f64; 2]> {

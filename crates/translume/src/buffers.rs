@@ -6,7 +6,7 @@ use crate::layout::{AtlasVertexLayout, Cluster, DeformLayout, GatherLayout, Infl
 use crate::stages::cluster::Tree;
 use crate::stages::scatter::SOURCES_PER_DISPATCH;
 use crate::stages::shadow::DepthMaps;
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 use translume_mesh::normals::{NormalAdjacency, smooth_normals};
 use translume_mesh::{Atlas, Mesh};
 use wgpu::BufferUsages;
@@ -75,7 +75,7 @@ impl Extent {
         let adjacency = 4 * (u64::from(self.vertices) + 6 * u64::from(self.triangles));
         let bindings = [
             ("atlas", pixels, SMALLER_ATLAS),
-            ("texels", 16 * u64::from(self.texels), SMALLER_ATLAS),
+            ("texels", 32 * u64::from(self.texels), SMALLER_ATLAS),
             ("clusters", clusters, SMALLER_ATLAS),
             ("mesh", 36 * u64::from(self.vertices), SMALLER_MESH),
             ("mesh", adjacency, SMALLER_MESH),
@@ -227,15 +227,32 @@ fn texel_layouts(mesh: &Mesh, atlas: &Atlas) -> Vec<TexelLayout> {
     };
     let texels = atlas.texels.iter();
     texels
-        .map(|texel| TexelLayout {
-            triangle: texel.triangle,
-            barycentric_1: texel.barycentric[0],
-            barycentric_2: texel.barycentric[1],
-            area_ratio: if texel.area > 0.0 {
-                texel.area / area(texel.triangle).max(f32::MIN_POSITIVE)
-            } else {
-                0.0
-            },
+        .map(|texel| {
+            let [per_column, per_row] = weights_per_pixel(atlas, texel.triangle);
+            TexelLayout {
+                triangle: texel.triangle,
+                barycentric_1: texel.barycentric[0],
+                barycentric_2: texel.barycentric[1],
+                area_ratio: if texel.area > 0.0 {
+                    texel.area / area(texel.triangle).max(f32::MIN_POSITIVE)
+                } else {
+                    0.0
+                },
+                per_column,
+                per_row,
+            }
         })
         .collect()
+}
+
+/// How the weights of a triangle's second and third corner change from pixel to pixel of the atlas, along its rows and columns; 0 for a
+/// triangle that has no area there.
+fn weights_per_pixel(atlas: &Atlas, triangle: u32) -> [[f32; 2]; 2] {
+    let [a, b, c] = atlas.triangles[triangle as usize]
+        .map(|v| Vec2::from(atlas.vertices[v as usize].uv) * atlas.size as f32);
+    let (b, c) = (b - a, c - a);
+    let per_column = Vec2::new(c.y, -b.y) / b.perp_dot(c);
+    let per_row = Vec2::new(-c.x, b.x) / b.perp_dot(c);
+    let finite = |v: Vec2| if v.is_finite() { v.to_array() } else { [0.0; 2] };
+    [finite(per_column), finite(per_row)]
 }

@@ -132,6 +132,8 @@ pub(crate) struct TexelLayout {
     pub barycentric_1: f32,
     pub barycentric_2: f32,
     pub area_ratio: f32,
+    pub per_column: [f32; 2],
+    pub per_row: [f32; 2],
 }
 
 #[repr(C)]
@@ -290,7 +292,7 @@ mod tests {
                 sky
             ]
         );
-        check!(GATHER, "Texel", TexelLayout, [triangle, barycentric_1, barycentric_2, area_ratio]);
+        check!(GATHER, "Texel", TexelLayout, [triangle, barycentric_1, barycentric_2, area_ratio, per_column, per_row]);
         check!(CLUSTER, "Level", LevelLayout, [child_count, node_count, child_offset, node_offset]);
         check!(CLUSTER, "Cluster", Cluster, [centroid, spread, power, radius, normal, area]);
         check!(SCATTER, "KernelTable", KernelTableLayout, [least_r2, least_s2, columns, rows]);

@@ -274,7 +274,7 @@ fn scratch() {
         let mut fixture = Fixture::new(model, |d| d.medium = Medium::MARBLE);
         for (kind, light) in all {
             let twin = luminous(&fixture.twin_sources(&pose, &[light], 4));
-            for res in [512, 1024, 2048] {
+            for res in [1024, 2048, 4096] {
                 fixture.body.set_shadows(translume::ShadowOptions { resolution: res, ..Default::default() }).unwrap();
                 let start = std::time::Instant::now();
                 fixture.light(&pose.frame(&[light]));
@@ -284,6 +284,26 @@ fn scratch() {
                 let t: Vec<f64> = twin.iter().map(|e| e[0]).collect();
                 let m = translume_reference::metrics::compare(&g, &t, None).unwrap();
                 let worse = g.iter().zip(&t).filter(|(g, t)| (**g - **t).abs() > 0.5 * m.p99 / m.relative_p99).count();
+                let src = fixture.sources();
+                let mask: Vec<bool> = src.iter().map(|s| s.area > 0.0).collect();
+                let m2 = translume_reference::metrics::compare(&g, &t, Some(&mask)).unwrap();
+                let full: Vec<bool> = { let a = src.iter().map(|s| s.area).fold(0.0, f64::max); src.iter().map(|s| s.area > 0.4 * a).collect() };
+                let m3 = translume_reference::metrics::compare(&g, &t, Some(&full)).unwrap();
+                if let Light::Directional(l) = light {
+                    let surface = fixture.twin_surface(&pose);
+                    let dir = DVec3::from(l.to_light.map(f64::from)).normalize();
+                    let mut parts = [0.0; 6]; let mut total = 0.0; let mut counts = [0; 6];
+                    for (k, texel) in model.atlas.texels.iter().enumerate() {
+                        let fc = DVec3::from(surface.face_normal(texel.triangle)).dot(dir);
+                        let sc = DVec3::from(src[k].normal).dot(dir);
+                        let e = (g[k] - t[k]).powi(2); total += e;
+                        let partial = t[k] > 0.02 && g[k] > 0.02 ;
+                        let class = if fc.abs() < 0.05 || fc * sc < 0.0 { 0 } else if fc < 0.15 { 1 } else if src[k].area == 0.0 { 2 } else if partial { 3 } else if t[k] <= 0.02 {4} else {5};
+                        parts[class] += e; counts[class] += (e > 0.01) as usize;
+                    }
+                    println!("   parts: terminator {:.3} grazing {:.3} rim {:.3} both {:.3} leak {:.3} dark {:.3} counts {counts:?}", parts[0]/total, parts[1]/total, parts[2]/total, parts[3]/total, parts[4]/total, parts[5]/total);
+                }
+                println!("   covered {:.4} {:+.4}  full {:.4} {:+.4} counts {} {} {}", m2.relative_rmse, m2.bias, m3.relative_rmse, m3.bias, g.len(), m2.count, m3.count);
                 println!("{name} {kind} {res}: rmse {:.4} rms {:.4} bias {:+.4} bad {:.4} {ms} ms", m.relative_rmse, relative_rmse(&gpu, &twin), m.bias, worse as f64 / g.len() as f64);
             }
         }
