@@ -177,6 +177,7 @@ fn light_layout(light: &Light, scale: f32, first_view: u32, view_count: u32) -> 
         Light::Point(light) => (1, light.position.map(|x| x * scale), in_mm(light.intensity), light.region),
         Light::Spot(light) => (1, light.position.map(|x| x * scale), in_mm(light.intensity), light.region),
         Light::Ambient(light) => (2, light.axis, light.radiance, None),
+        Light::Environment(_) => (2, [0.0; 3], [0.0; 3], None),
     };
     // Far corners stay finite, so that infinity minus infinity never arises.
     let bound = |x: f32| (x * scale).clamp(-1e30, 1e30);
