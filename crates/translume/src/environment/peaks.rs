@@ -30,9 +30,10 @@ impl EnvironmentMap {
     ///
     /// A peak is a group of pixels above 8 times the map's mean luminance that touch by edge or corner (across u = 0 and at the poles
     /// too). It covers at most 0.1 sr; the mean of its directions, weighted by power, has a length of at least 0.99; and it brings at
-    /// least 1 % of the map's flux. The brightest 8 are taken. A light carries ∫ (L − level) dω, where level is the mean radiance of the
-    /// pixels around the group, or in a channel where it is less, of the group. In the rest the group's pixels have that level, so nothing is lost and
-    /// nothing counts twice.
+    /// least 1 % of the map's flux. The brightest 8 are taken.
+    ///
+    /// A light carries ∫ (L − level) dω, where level is the mean radiance of the pixels around the group (of the group itself in a
+    /// channel where that is less). In the rest the group's pixels have that level: nothing is lost and nothing counts twice.
     #[must_use]
     pub fn split_peaks(&self) -> (Vec<DirectionalLight>, EnvironmentLight) {
         let grid = Grid::new(self.width, self.height);
