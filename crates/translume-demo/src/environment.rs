@@ -209,6 +209,19 @@ mod tests {
         assert!(message.contains("nan.exr") && message.contains("column 2, row 1"), "{message}");
         let bytes = std::fs::read(&path).unwrap();
         refused("cut.exr", &bytes[..bytes.len() / 2], &["OpenEXR"]);
+        // A header that promises 10¹² pixels.
+        let mut huge = bytes.clone();
+        let name = b"dataWindow\0box2i\0";
+        let window = bytes.windows(name.len()).position(|part| part == name).unwrap() + name.len() + 4;
+        huge[window + 8..window + 16].copy_from_slice(&[0x3f, 0x42, 0x0f, 0, 0x3f, 0x42, 0x0f, 0]);
+        refused("huge.exr", &huge, &[]);
+        // Grey alone is no colour.
+        let channels =
+            exr::prelude::SpecificChannels::build().with_channel("Y").with_pixel_fn(|_| (1.0_f32,));
+        let grey = exr::prelude::Image::from_channels((2, 1), channels);
+        let path = directory.path().join("grey.exr");
+        exr::prelude::WritableImage::write(&grey).to_file(&path).unwrap();
+        refused("grey.exr", &std::fs::read(&path).unwrap(), &["channels R, G and B"]);
         assert!(read(&directory.path().join("gone.exr")).unwrap_err().to_string().contains("cannot be read"));
     }
 
