@@ -37,7 +37,12 @@ fn lights(shadow: bool) -> [Light; 4] {
 }
 
 fn cone() -> [Light; 1] {
-    [Light::Ambient(AmbientLight { radiance: [1.0, 0.5, 0.25], axis: [0.3, 2.0, 0.5], half_angle: 0.3 })]
+    [Light::Ambient(AmbientLight {
+        radiance: [1.0, 0.5, 0.25],
+        axis: [0.3, 2.0, 0.5],
+        half_angle: 0.3,
+        ..Default::default()
+    })]
 }
 
 fn pose(model: &Model) -> Pose {
