@@ -44,6 +44,13 @@ fn the_material_functions_stand_alone() {
 }
 
 #[test]
+fn the_environment_stands_alone() {
+    let source = include_str!("../shared/environment.wgsl");
+    translate("environment", source).unwrap_or_else(|error| panic!("{error}"));
+    assert!(translate("broken", &source.replace("n: vec3f", "n: vec2f")).is_err());
+}
+
+#[test]
 fn a_broken_module_is_noticed() {
     let broken = ALL[0].source.replace("vec3f", "vec4f");
     assert!(translate("broken", &broken).is_err());

@@ -10,6 +10,7 @@ Examples:
   translume render creature --medium wax --frames 48 -o morph.png      an animated PNG
   translume render fox.glb --animation Walk --frames 24 -o walk.png    another
   translume render spot.obj --twist 90 --bend 40 -o candy.png
+  translume render teapot --env sky.exr -o outdoors.png                light from all around
   translume render bunny.obj --into egg --frames 48 -o egg.png         whatever is closed melts
   translume render --scene scene.json -o scene.exr                     linear radiance, full float
   translume inspect bunny.obj --json
@@ -86,6 +87,18 @@ pub struct Render {
     /// Which axis of the model points up: y or z.
     #[arg(long, value_name = "AXIS", conflicts_with = "scene", default_value = "y", value_parser = ["y", "z"])]
     pub up: String,
+    /// Light from this equirectangular map, .exr or .hdr, in place of all other lights.
+    #[arg(long, value_name = "FILE")]
+    pub env: Option<PathBuf>,
+    /// Degrees by which the map turns about the vertical, anticlockwise seen from above.
+    #[arg(
+        long,
+        value_name = "DEGREES",
+        requires = "env",
+        allow_negative_numbers = true,
+        default_value_t = 0.0
+    )]
+    pub env_rotation: f32,
     /// Brightness of a PNG, in stops.
     #[arg(long, value_name = "EV", default_value_t = 0.0, allow_negative_numbers = true)]
     pub exposure: f32,

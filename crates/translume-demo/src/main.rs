@@ -1,6 +1,7 @@
 //! `translume`: render and inspect translucent models.
 
 mod cli;
+mod environment;
 mod error;
 mod framing;
 mod gpu;

@@ -1,6 +1,7 @@
 //! `translume render`: a model or a scene becomes a picture.
 
 use crate::cli::Render;
+use crate::environment::Environment;
 use crate::error::Error;
 use crate::framing::Subject;
 use crate::gpu::Gpu;
@@ -11,7 +12,7 @@ use crate::studio::Studio;
 use crate::{model, progress};
 use std::path::Path;
 use std::time::Instant;
-use translume::{BodyDescriptor, Frame, Gloss, Lighting, Medium, Method, Profile, ShadowOptions};
+use translume::{BodyDescriptor, Frame, Gloss, Light, Lighting, Medium, Method, Profile, ShadowOptions};
 
 /// Everything a picture needs, in the units of the scene.
 struct Setup {
@@ -54,7 +55,7 @@ pub fn run(arguments: &Render) -> Result<(), Error> {
     let subject = Subject::new(motion.points()?);
     let camera = sized(setup.camera, &subject, arguments);
     let lights = match &setup.lights {
-        Some(lights) => lights.iter().map(|light| light.light(-1e-4 * mesh.diagonal())).collect(),
+        Some(lights) => library_lights(lights, -1e-4 * mesh.diagonal())?,
         None => subject.lamps(arguments.view),
     };
     let start = Instant::now();
@@ -145,7 +146,7 @@ fn from_scene(path: &Path, arguments: &Render) -> Result<Setup, Error> {
         medium,
         mm_per_unit: arguments.mm_per_unit.unwrap_or(scene.length_unit.mm()),
         wish: overridden(scene.wish(), arguments),
-        lights: scene.lights,
+        lights: environment(arguments).or(scene.lights),
         camera: scene.camera,
         gloss: gloss(arguments.gloss.unwrap_or(0.0))?,
     })
@@ -168,12 +169,27 @@ fn from_model(name: &str, arguments: &Render) -> Result<Setup, Error> {
         flat_normals: false,
         medium,
         mm_per_unit,
-        lights: None,
+        lights: environment(arguments),
         camera: None,
         wish: overridden(Wish::default(), arguments),
         gloss: gloss(arguments.gloss.unwrap_or(DEFAULT_ROUGHNESS))?,
         model,
     })
+}
+
+/// The map that the command line names, in place of other lights.
+fn environment(arguments: &Render) -> Option<Vec<SceneLight>> {
+    let file = arguments.env.clone()?;
+    let environment = Environment { rotation_deg: arguments.env_rotation, ..Environment::new(file) };
+    Some(vec![SceneLight::Environment(environment)])
+}
+
+fn library_lights(lights: &[SceneLight], just_below_y0: f32) -> Result<Vec<Light>, Error> {
+    let mut all = Vec::new();
+    for light in lights {
+        all.extend(light.lights(just_below_y0)?);
+    }
+    Ok(all)
 }
 
 /// The command line has the last word.

@@ -64,6 +64,14 @@ pub enum Error {
         /// What it may be.
         range: String,
     },
+    /// A map of the environment cannot be.
+    #[error("environment map: {problem}; {remedy}")]
+    Environment {
+        /// What is wrong, naming the pixel.
+        problem: String,
+        /// What to do about it.
+        remedy: &'static str,
+    },
     /// An input of a frame cannot be.
     #[error("frame: {problem}; {remedy}")]
     Frame {

@@ -60,7 +60,7 @@ pub use body::Body;
 pub use buffers::Outputs;
 pub use camera::{Camera, LookAt};
 pub use descriptor::BodyDescriptor;
-pub use environment::EnvironmentLight;
+pub use environment::{EnvironmentLight, EnvironmentMap};
 pub use error::Error;
 pub use frame::{Casters, Deformation, Frame, Lighting};
 pub use gpu::Work;

@@ -22,7 +22,7 @@ pub enum Light {
     Sphere(SphereLight),
     /// The same radiance from every direction of a cone, or of the whole sky.
     Ambient(AmbientLight),
-    /// Light from everywhere, as spherical harmonics.
+    /// Radiance from everywhere, such as the sky of an [`EnvironmentMap`](crate::EnvironmentMap).
     Environment(EnvironmentLight),
 }
 
@@ -80,7 +80,7 @@ pub struct AmbientLight {
     pub axis: [f32; 3],
     /// Half angle of the cone, radians, 0..π; π is the whole sky.
     pub half_angle: f32,
-    /// Whether the body keeps it from itself.
+    /// Whether the body occludes it.
     pub shadow: bool,
 }
 
@@ -134,14 +134,9 @@ impl SpotLight {
 }
 
 impl Default for AmbientLight {
-    /// The whole sky at radiance 1, seen from everywhere.
+    /// The whole sky at radiance 1, unoccluded.
     fn default() -> Self {
-        Self {
-            radiance: [1.0; 3],
-            axis: [0.0, 1.0, 0.0],
-            half_angle: std::f32::consts::PI,
-            shadow: false,
-        }
+        Self { radiance: [1.0; 3], axis: [0.0, 1.0, 0.0], half_angle: std::f32::consts::PI, shadow: false }
     }
 }
 
@@ -183,8 +178,17 @@ impl Light {
                 }
                 (light.radiance, [light.center; 2], None)
             }
-            Self::Environment(_) => return Ok(()),
             Self::Ambient(light) => (light.radiance, [light.axis, [light.half_angle; 3]], Some(light.axis)),
+            Self::Environment(light) => {
+                // Harmonics may be negative.
+                return match light.coefficients.iter().position(|rgb| rgb.iter().any(|c| !c.is_finite())) {
+                    Some(k) => fail(
+                        format!("has coefficient {k} {:?}", light.coefficients[k]),
+                        "coefficients are finite",
+                    ),
+                    None => Ok(()),
+                };
+            }
         };
         if colour.iter().any(|c| !(0.0..=f32::MAX).contains(c)) {
             return fail(format!("has colour {colour:?}"), "colours are finite and not negative");
@@ -282,5 +286,11 @@ mod tests {
         let aimless = Light::Spot(SpotLight { direction: [0.0; 3], ..Default::default() });
         assert!(aimless.validate(0).is_err());
         assert!(Light::Ambient(AmbientLight::default()).validate(0).is_ok());
+        let mut sky = EnvironmentLight::default();
+        sky.coefficients[3] = [-1.0; 3];
+        assert!(Light::Environment(sky).validate(0).is_ok());
+        sky.coefficients[7] = [0.0, f32::INFINITY, 0.0];
+        let message = Light::Environment(sky).validate(4).unwrap_err().to_string();
+        assert!(message.contains("light 4 has coefficient 7"), "{message}");
     }
 }

@@ -1,11 +1,15 @@
 //! The scene format: JSON, lengths in the unit it states, linear colours. Unknown fields and types are errors that name them.
 
+mod lights;
+
+pub use lights::SceneLight;
+
 use crate::error::Error;
 use crate::model;
 use crate::motion::Wish;
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
-use translume::{AmbientLight, DirectionalLight, Light, Medium, PointLight, Region, SpotLight};
+use translume::Medium;
 use translume_mesh::builtin;
 
 /// A scene file.
@@ -125,73 +129,6 @@ fn one() -> f32 {
     1.0
 }
 
-fn lit() -> bool {
-    true
-}
-
-#[derive(Clone, Debug, Deserialize)]
-#[serde(tag = "type", rename_all = "snake_case", deny_unknown_fields)]
-pub enum SceneLight {
-    Directional {
-        to_light: [f32; 3],
-        irradiance: [f32; 3],
-        #[serde(default = "lit")]
-        shadow: bool,
-        lit_region: Option<LitRegion>,
-    },
-    Point {
-        position: [f32; 3],
-        intensity: [f32; 3],
-        #[serde(default = "lit")]
-        shadow: bool,
-        lit_region: Option<LitRegion>,
-    },
-    Spot {
-        position: [f32; 3],
-        direction: [f32; 3],
-        intensity: [f32; 3],
-        #[serde(default)]
-        inner_angle_deg: f32,
-        #[serde(default = "spot_outer_angle_deg")]
-        outer_angle_deg: f32,
-        #[serde(default = "lit")]
-        shadow: bool,
-        lit_region: Option<LitRegion>,
-    },
-    ConstantEnv {
-        radiance: [f32; 3],
-    },
-    CapEnv {
-        radiance: [f32; 3],
-        axis: [f32; 3],
-        half_angle_deg: f32,
-    },
-}
-
-/// As in the glTF extension.
-fn spot_outer_angle_deg() -> f32 {
-    45.0
-}
-
-/// Light enters only through the face y = 0, and only where the coordinate is at least `min`.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct LitRegion {
-    pub axis: Axis,
-    pub min: f32,
-    #[serde(default)]
-    #[allow(dead_code, reason = "read by people")]
-    pub note: String,
-}
-
-#[derive(Clone, Copy, Debug, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Axis {
-    X,
-    Y,
-    Z,
-}
-
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SceneCamera {
@@ -214,7 +151,7 @@ impl Scene {
     pub fn read(path: &Path) -> Result<Self, Error> {
         let fail = |problem: String| Error::Scene { path: path.to_owned(), problem };
         let text = std::fs::read_to_string(path).map_err(|error| fail(format!("cannot be read: {error}")))?;
-        let scene: Self =
+        let mut scene: Self =
             serde_json::from_str(&text).map_err(|error| fail(format!("is not a scene: {error}")))?;
         if scene.material.is_some() && scene.medium.is_some() {
             return Err(fail("has both `material` and `medium`; keep one".to_owned()));
@@ -225,6 +162,8 @@ impl Scene {
         if let Some(camera) = &scene.camera {
             camera.validate().map_err(|problem| fail(format!("camera: {problem}")))?;
         }
+        let directory = path.parent().unwrap_or(Path::new(""));
+        scene.lights.iter_mut().flatten().for_each(|light| light.find(directory));
         Ok(scene)
     }
 
@@ -295,65 +234,6 @@ impl SceneCamera {
     }
 }
 
-impl LitRegion {
-    fn region(&self, surface: f32) -> Region {
-        let mut low = [f32::MIN; 3];
-        low[1] = surface;
-        let axis = self.axis as usize;
-        low[axis] = low[axis].max(self.min);
-        Region { low, high: [f32::MAX; 3] }
-    }
-}
-
-impl SceneLight {
-    /// As the library takes it. `just_below_y0` is the height that still counts as the face y = 0.
-    pub fn light(&self, just_below_y0: f32) -> Light {
-        let region = |lit: &Option<LitRegion>| lit.as_ref().map(|lit| lit.region(just_below_y0));
-        match self {
-            Self::Directional { to_light, irradiance, shadow, lit_region } => {
-                Light::Directional(DirectionalLight {
-                    to_light: *to_light,
-                    irradiance: *irradiance,
-                    shadow: *shadow,
-                    region: region(lit_region),
-                })
-            }
-            Self::Point { position, intensity, shadow, lit_region } => Light::Point(PointLight {
-                position: *position,
-                intensity: *intensity,
-                shadow: *shadow,
-                region: region(lit_region),
-            }),
-            Self::Spot {
-                position,
-                direction,
-                intensity,
-                inner_angle_deg,
-                outer_angle_deg,
-                shadow,
-                lit_region,
-            } => Light::Spot(SpotLight {
-                position: *position,
-                direction: *direction,
-                intensity: *intensity,
-                inner_angle: inner_angle_deg.to_radians(),
-                outer_angle: outer_angle_deg.to_radians(),
-                shadow: *shadow,
-                region: region(lit_region),
-            }),
-            Self::ConstantEnv { radiance } => {
-                Light::Ambient(AmbientLight { radiance: *radiance, ..Default::default() })
-            }
-            Self::CapEnv { radiance, axis, half_angle_deg } => Light::Ambient(AmbientLight {
-                radiance: *radiance,
-                axis: *axis,
-                half_angle: half_angle_deg.to_radians(),
-                shadow: false,
-            }),
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -398,12 +278,5 @@ mod tests {
         let camera =
             r#""camera": { "eye": [0,0,0], "target": [0,0,0], "fov_deg": 20, "width": 8, "height": 8 }"#;
         assert!(read(&format!("{{ {SPHERE}, {camera} }}")).unwrap_err().to_string().contains("camera"));
-    }
-
-    #[test]
-    fn a_lit_region_cuts_one_axis_and_the_face() {
-        let region = LitRegion { axis: Axis::X, min: 2.0, note: String::new() }.region(-0.1);
-        assert_eq!((region.low[0], region.low[1]), (2.0, -0.1));
-        assert_eq!(region.low[2], f32::MIN);
     }
 }
