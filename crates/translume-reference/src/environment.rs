@@ -157,7 +157,7 @@ mod tests {
     #[test]
     fn constant_map_is_a_constant_sky() {
         let constant = map(256, 128, |_, _| 2.0);
-        for eta in [0.7, 1.0, 1.3, 1.5] {
+        for eta in [1.0, 1.3, 1.5] {
             for normal in [DVec3::Y, DVec3::X, DVec3::new(0.3, -0.5, 0.7).normalize()] {
                 let exact = 2.0 * PI * hemispherical_transmittance(eta);
                 // Midpoints of pixels of 1/40 rad, and of a kink at the horizon: measured 1.0e-4 at most.

@@ -4,15 +4,13 @@
 //! Along an edge, a great circle with unit normal e, dφ = (n·e) dα / (1 − c²) with α the angle along it, so that each edge
 //! gives (n·e) ∫ H dα with H = G/(1 − c²). Without Fresnel H is ½ and this is Lambert's formula.
 
-use std::f64::consts::PI;
-
 use glam::DVec3;
 
 use crate::fresnel::transmittance;
 use crate::quadrature::{integrate, integrate_panels};
 
 /// ∫ F_t(eta, cos) cos dω over the part of a polygon above the horizon of `normal`, sr. Corners are relative to the
-/// receiver, counter-clockwise seen from it.
+/// receiver, in either order.
 pub(super) fn polygon_transmittance(eta: f64, normal: DVec3, corners: &[DVec3]) -> f64 {
     let above = above_horizon(normal, corners);
     let next = above.iter().cycle().skip(1);
@@ -65,11 +63,13 @@ fn mean_above(eta: f64, cos: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use std::f64::consts::PI;
+
     use super::*;
     use crate::fresnel::hemispherical_transmittance;
     use crate::testing::assert_rel;
 
-    /// A regular polygon of many corners around +y, counter-clockwise seen from the origin, as far as a cone of
+    /// A regular polygon of many corners around +y, as far as a cone of
     /// half angle `half` reaches.
     fn disc(half: f64, corners: u32) -> Vec<DVec3> {
         let at = |k: u32| {
@@ -86,8 +86,12 @@ mod tests {
                 let normal = DVec3::new(tilt.sin(), tilt.cos(), 0.0);
                 let cone = super::super::ambient_transmittance(eta, tilt.cos(), half);
                 let round = |half: f64| polygon_transmittance(eta, normal, &disc(half, 720));
-                // The polygon lacks (2π/720)²/6 = 1.3e-5 of the disc, a little more where the rim counts for more.
-                assert!((round(half) - cone).abs() < 3e-5 * cone, "{eta} {tilt}: {} {cone}", round(half));
+                // The polygon lacks (2π/720)²/6 = 1.3e-5 of the disc, up to four times that where only the rim is above the horizon.
+                assert!(
+                    (round(half) - cone).abs() < 6e-5 * cone + 1e-15,
+                    "{eta} {tilt}: {} {cone}",
+                    round(half)
+                );
                 assert!(cone == 0.0 || (round(half * 1.001) / cone - 1.0).abs() > 1e-4, "{eta} {tilt}");
             }
         }
@@ -99,7 +103,7 @@ mod tests {
             let sky = disc(0.5 * PI, 8);
             let exact = PI * hemispherical_transmittance(eta);
             assert_rel(polygon_transmittance(eta, DVec3::Y, &sky), exact, 1e-8, "tolerance of the integral");
-            let tilted = polygon_transmittance(eta, DVec3::new(0.6, 0.8, 0.0), &sky);
+            let tilted = polygon_transmittance(eta, DVec3::new(0.8, 0.6, 0.0), &sky);
             assert!(tilted < 0.99 * exact, "part of it is below the horizon");
         }
     }

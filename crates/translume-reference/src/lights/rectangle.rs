@@ -1,10 +1,9 @@
 //! A rectangle of uniform radiance, shining to one side.
 
-use std::f64::consts::TAU;
-
 use glam::DVec3;
 
 use super::polygon::polygon_transmittance;
+use super::solid_angle::Seen;
 use super::{Emitter, Ray, Receiver};
 use crate::rgb::scale;
 
@@ -76,7 +75,8 @@ impl Rectangle {
         if self.is_far(receiver.at.position) {
             return receiver.visible(points.map(|point| self.area_ray(receiver, point)))[0];
         }
-        let seen = Seen::new(self, receiver.at.position);
+        let offset = self.center - receiver.at.position;
+        let seen = Seen::new(self.axes.map(|axis| offset.dot(axis)), self.half, offset.dot(self.normal));
         receiver.visible(points.map(|point| towards(receiver, self.point(seen.point(point)))))[0]
     }
 }
@@ -99,48 +99,121 @@ fn towards(receiver: &Receiver<'_>, point: DVec3) -> Ray {
     Ray { direction, distance, weight: [receiver.share(direction); 3] }
 }
 
-/// The solid angle of a rectangle from one place, prepared to be sampled evenly.
-///
-/// Source: Ureña, Fajardo and King 2013, "An area-preserving parametrization for spherical rectangles"; the names are
-/// theirs.
-struct Seen {
-    x: [f64; 2],
-    y: [f64; 2],
-    half: [f64; 2],
-    center: [f64; 2],
-    z0: f64,
-    b0: f64,
-    b1: f64,
-    k: f64,
-    solid_angle: f64,
-}
+#[cfg(test)]
+mod tests {
+    use crate::testing::{assert_rel, entering, half_roof, nothing};
+    use crate::{Light, Surface};
 
-impl Seen {
-    fn new(rectangle: &Rectangle, from: DVec3) -> Self {
-        let offset = rectangle.center - from;
-        let center = rectangle.axes.map(|axis| offset.dot(axis));
-        let [x, y] = [0, 1].map(|k| [center[k] - rectangle.half[k], center[k] + rectangle.half[k]]);
-        let z0 = -offset.dot(rectangle.normal).abs();
-        // Components along z of the normals of the planes through the edges; their x or y follows from unit length.
-        let tilt = |c: f64| c / c.hypot(z0);
-        let n = [-tilt(y[0]), tilt(x[1]), tilt(y[1]), -tilt(x[0])];
-        let angle = |i: usize, j: usize| (-n[i] * n[j]).clamp(-1.0, 1.0).acos();
-        let (g0, g1, g2, g3) = (angle(0, 1), angle(1, 2), angle(2, 3), angle(3, 0));
-        let k = TAU - g2 - g3;
-        Self { x, y, half: rectangle.half, center, z0, b0: n[0], b1: n[2], k, solid_angle: g0 + g1 - k }
+    /// A rectangle of the given half sides at a height, shining down.
+    fn ceiling(center: [f64; 3], [a, b]: [f64; 2]) -> Light {
+        let (half_right, half_up) = ([a, 0.0, 0.0], [0.0, 0.0, b]);
+        Light::Rectangle { center, half_right, half_up, radiance: [1.0, 2.0, 3.0], shadow: true }
     }
 
-    /// The point of the rectangle, −1..=1 along each axis, that belongs to a point of the unit square.
-    fn point(&self, [u, v]: [f64; 2]) -> [f64; 2] {
-        let angle = u * self.solid_angle + self.k;
-        let f = (angle.cos() * self.b0 - self.b1) / angle.sin();
-        let cos = f.signum() / f.hypot(self.b0);
-        let x = -cos * self.z0 / (1.0 - cos * cos).max(f64::MIN_POSITIVE).sqrt();
-        let x = x.clamp(self.x[0], self.x[1]);
-        let d = x.hypot(self.z0);
-        let [h0, h1] = self.y.map(|y| y / d.hypot(y));
-        let h = h0 + v * (h1 - h0);
-        let y = (h * d / (1.0 - h * h).max(f64::MIN_POSITIVE).sqrt()).clamp(self.y[0], self.y[1]);
-        [(x - self.center[0]) / self.half[0], (y - self.center[1]) / self.half[1]]
+    fn at_origin(surface: &Surface, light: &Light, eta: f64, rays: u32) -> f64 {
+        entering(surface, light, eta, rays, [0.0; 3], [0.0, 1.0, 0.0])[0]
+    }
+
+    /// π times the configuration factor from a point to a parallel rectangle whose corner is at height `c` above it.
+    /// Source: Howell, "A catalog of radiation heat transfer configuration factors", B-3.
+    fn above_corner(a: f64, b: f64, c: f64) -> f64 {
+        let (a, b) = (a / c, b / c);
+        let (ra, rb) = (1.0f64.hypot(a), 1.0f64.hypot(b));
+        0.5 * (a / ra * (b / ra).atan() + b / rb * (a / rb).atan())
+    }
+
+    #[test]
+    fn parallel_to_the_surface_without_fresnel() {
+        for (a, b, c) in
+            [(1.0, 1.0, 1e-6), (1.0, 3.0, 0.5), (2.0, 0.1, 5.0), (1.0, 1.0, 1e2), (1.0, 1.0, 1e5)]
+        {
+            let exact = 4.0 * above_corner(a, b, c);
+            let light = at_origin(&nothing(), &ceiling([0.0, c, 0.0], [a, b]), 1.0, 3);
+            // Just nearer than FAR four angles cancel to 1e-4 of each; beyond, the rule's error is FAR⁴.
+            assert_rel(light, exact, 1e-8, "above the middle");
+            let corner = at_origin(&nothing(), &ceiling([a, c, -b], [a, b]), 1.0, 3);
+            assert_rel(corner, above_corner(2.0 * a, 2.0 * b, c), 1e-8, "above a corner");
+            let moved = at_origin(&nothing(), &ceiling([0.0, 1.001 * c, 0.0], [a, b]), 1.0, 3);
+            assert!(c < 1e-3 || (moved / exact - 1.0).abs() > 1e-5, "0.1 % higher must be noticed");
+        }
+    }
+
+    /// A lit wall that stands on the surface, next to the receiver.
+    #[test]
+    fn perpendicular_and_touching_without_fresnel() {
+        for c in [1e-6, 0.1, 3.0] {
+            let (width, height) = (2.0f64, 1.0f64);
+            let wall = |lean: f64| Light::Rectangle {
+                center: [c, 0.5 * height, 0.5 * width],
+                half_right: [0.0, 0.5 * height * lean, 0.0],
+                half_up: [0.0, 0.0, -0.5 * width],
+                radiance: [1.0; 3],
+                shadow: true,
+            };
+            // Howell B-4, the corner nearest to the receiver.
+            let far = height.hypot(c);
+            let exact = 0.5 * ((width / c).atan() - c / far * (width / far).atan());
+            assert_rel(at_origin(&nothing(), &wall(1.0), 1.0, 3), exact, 1e-8, "wall");
+            assert_eq!(at_origin(&nothing(), &wall(-1.0), 1.0, 3), 0.0, "its back");
+        }
+    }
+
+    #[test]
+    fn small_and_far_is_a_point_with_a_cosine() {
+        let position = [30.0, 40.0, 0.0];
+        let light = ceiling(position, [0.1, 0.2]);
+        let point = |area: f64| {
+            let intensity = [0.8 * area; 3];
+            let point = Light::Point { position, intensity, shadow: true, region: None };
+            at_origin(&nothing(), &point, 1.4, 1)
+        };
+        // The next term is of the order of (0.2/50)²/3 = 5e-6.
+        assert_rel(at_origin(&nothing(), &light, 1.4, 1), point(0.08), 2e-5, "point");
+        assert!((point(0.0801) / point(0.08) - 1.0).abs() > 2e-5);
+    }
+
+    /// Both ways to evaluate it agree where one takes over from the other.
+    #[test]
+    fn near_and_far_meet() {
+        for eta in [0.8, 1.0, 1.4] {
+            let at = |distance: f64, cos: f64| {
+                let height = cos * distance;
+                let light =
+                    ceiling([(distance * distance - height * height).sqrt(), height, 0.0], [0.6, 0.8]);
+                at_origin(&nothing(), &light, eta, 1) * distance * distance
+            };
+            let (near, far) = (at(99.9, 0.7), at(100.1, 0.7));
+            // The light's size tells by (1/100)², between the two by 0.4 % of that: what is left is the method.
+            assert!((near - far).abs() <= 2e-6 * near, "{eta}: {near} {far}");
+            assert!(
+assert!((at(99.9, 0.700_01) / near - 1.0).abs() > 2e-6, "{eta}: a tilt of 1e-5 must be noticed");
+        }
+    }
+
+    /// A roof whose edge lies in line with x = `from` of the light leaves the rectangle from there on.
+    #[test]
+    fn what_a_roof_leaves_is_a_smaller_rectangle() {
+        for (height, half) in [(1.0, [1.0, 0.7]), (0.05, [1.0, 0.7]), (500.0, [1.0, 0.7])] {
+            for eta in [1.0, 1.4] {
+                let center = [0.3, height, -0.2];
+                let part = |from: f64| {
+                    let width = 0.5 * (from - (center[0] - half[0]));
+                    let light = ceiling([from - width, height, center[2]], [width, half[1]]);
+                    at_origin(&nothing(), &light, eta, 1)
+                };
+                let covered = |from: f64| {
+                    at_origin(&half_roof(0.5 * from, 0.5 * height), &ceiling(center, half), eta, 16)
+                };
+                for from in [-0.4, 0.0, 0.3, 1.1] {
+                    // The edge runs through 16 of 256 cells: measured 1.2 % of the whole at most.
+                    let whole = part(1.3);
+                    let error = (covered(from) - part(from)).abs();
+                    assert!(error < 0.02 * whole, "{height} {eta} {from}: {}", error / whole);
+                    assert!((covered(from) - part(from + 0.2)).abs() > 0.02 * whole || height < 0.1);
+                }
+                assert_eq!(covered(-2.0), 0.0);
+                assert_eq!(covered(2.0), part(1.3));
+            }
+        }
     }
 }
