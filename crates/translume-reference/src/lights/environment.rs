@@ -123,6 +123,7 @@ fn merged(map: &EnvironmentMap) -> Vec<Patch> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::lights::strata::Strata;
     use crate::testing::{assert_rel, entering, half_roof, nothing, ring, wall};
     use crate::{Light, Surface};
     use std::f64::consts::{PI, TAU};
@@ -135,14 +136,15 @@ mod tests {
         EnvironmentMap::new(width, height, pixels).expect("as many pixels as it says")
     }
 
-    /// Coloured noise over four decades with a sun of half the light.
+    /// Noise over four decades, another in each channel, with a sun.
     fn noise(width: usize, height: usize) -> EnvironmentMap {
-        let random = |k: usize| ((k as f64 * 0.618_033_988).fract() * 1e4).fract();
+        let points: Vec<_> =
+            Strata::new((width * height).isqrt() as u32 + 1, DVec3::ZERO, 0).points().collect();
+        let random = |k: usize, axis: usize| (points[k % points.len()][axis] * 1e3).fract();
         map(width, height, |column, row| {
-            let k = 3 * (row * width + column);
+            let k = row * width + column;
             let sun = if (column, row) == (width / 3, height / 4) { (width * height) as f64 } else { 0.0 };
-            let grey = 10.0f64.powf(4.0 * random(k) - 3.0);
-            [0, 1, 2].map(|c| grey * (0.5 + random(k + c + 1)) + sun)
+            [random(k, 0), random(k, 1), random(k + 7, 0)].map(|x| 10.0f64.powf(4.0 * x - 3.0) + sun)
         })
     }
 
@@ -167,8 +169,8 @@ mod tests {
                 let light = entering(&nothing(), &surroundings(&map, false), 1.3, 16, [0.0; 3], normal);
                 worst = (0..3).map(|c| (light[c] / exact[c] - 1.0).abs()).fold(worst, f64::max);
             }
-            println!("merged {width} {height} {worst:e}");
-            // Without merging, rounding; blocks of 1.4°: measured WORST.
+            // Without merging, rounding; blocks of 1.4°: measured 8e-5 at most.
+            println!("merged {width} {worst:e}");
             assert!(worst < tolerance, "{width}·{height}: {worst:e}");
             assert!(width == 64 || worst > 1e-12, "blocks must have been merged here");
         }
@@ -231,7 +233,6 @@ mod tests {
         };
         let before = shaded(&wall(), &original, normal);
         let after = shaded(&turned, &shifted(64 - 8), about_y(normal));
-        println!("turn {}", after / before - 1.0);
         assert_rel(after, before, 0.02, "noise of the rest; the sun is exact");
         assert!((shaded(&turned, &shifted(8), about_y(normal)) / before - 1.0).abs() > 0.05, "mirrored");
         let open = entering(&nothing(), &surroundings(&original, false), 1.3, 32, [0.0; 3], normal)[0];

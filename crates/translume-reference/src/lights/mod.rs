@@ -227,7 +227,6 @@ mod tests {
         for light in lights() {
             let truth = at_places(&light, 96);
             let [few, many] = [4, 16].map(|rays| errors(&light, rays, &truth));
-            println!("{few:?} {many:?}");
             // An edge through cells errs by rays^−3/2: an eighth for four times as many.
             assert!(few[0] / many[0] > 5.0 && few[0] / many[0] < 14.0, "{few:?} {many:?} {light:?}");
             // Standard error of the mean over 128 places, four times, with the truth's own.

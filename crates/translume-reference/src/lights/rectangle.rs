@@ -185,8 +185,7 @@ mod tests {
             let (near, far) = (at(99.9, 0.7), at(100.1, 0.7));
             // The light's size tells by (1/100)², between the two by 0.4 % of that: what is left is the method.
             assert!((near - far).abs() <= 2e-6 * near, "{eta}: {near} {far}");
-            assert!(
-assert!((at(99.9, 0.700_01) / near - 1.0).abs() > 2e-6, "{eta}: a tilt of 1e-5 must be noticed");
+            assert!((at(99.9, 0.700_01) / near - 1.0).abs() > 2e-6, "{eta}: a tilt of 1e-5 must be noticed");
         }
     }
 
