@@ -59,9 +59,9 @@ pub struct Gather<'a> {
     /// Light is the mean over this number squared of points inside the texel's square, those on the surface; 0 and 1 take
     /// the texel's centre, moved to the edge of its triangle if it lies outside.
     pub samples: u32,
-    /// Each light that has an extent and a shadow is looked at along this number squared of directions from each point,
-    /// spread evenly over it and jittered anew at each point; 0 counts as 1. The light is exact where all of it is seen or
-    /// none. In between, one direction favours what a weighing by cosine would not; from 4 on that is below the noise.
+    /// Light from an extended source that casts a shadow is taken along this number squared of directions from each point,
+    /// spread evenly and jittered anew at each point; 0 counts as 1. It is exact where all of the source is seen, or none. In
+    /// a penumbra a single direction is off in the mean too, as the cosine cannot weigh it; with 4 or more, within 0.2 %.
     pub rays: u32,
 }
 

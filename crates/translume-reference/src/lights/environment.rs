@@ -170,8 +170,7 @@ mod tests {
                 let light = entering(&nothing(), &surroundings(&map, false), 1.3, 16, [0.0; 3], normal);
                 worst = (0..3).map(|c| (light[c] / exact[c] - 1.0).abs()).fold(worst, f64::max);
             }
-            // Without merging, rounding; blocks of 1.4°: measured 8e-5 at most.
-            println!("merged {width} {worst:e}");
+            // Without merging, rounding; blocks of 1.4°: measured 4e-5 at most.
             assert!(worst < tolerance, "{width}·{height}: {worst:e}");
             assert!(width == 64 || worst > 1e-12, "blocks must have been merged here");
         }
@@ -185,7 +184,7 @@ mod tests {
             let exact = entering(&surface, &sky, 1.3, 64, [0.0; 3], UP);
             let light = at_origin(&surface, &constant, 1.3, 32);
             for c in 0..3 {
-                // Rims as on the sky; the map's pixels cost 0.1 %. Measured 0.8 % at most.
+                // Rims as on the sky; the map's pixels cost 0.1 %. Measured 1.4 % at most.
                 assert_rel(light[c], exact[c], 0.02, "constant map");
             }
         }
@@ -198,6 +197,7 @@ mod tests {
             |column: usize, row: usize| (113..143).contains(&(column + 64)) && (22..42).contains(&row);
         let window = map(256, 128, |column, row| if inside(column, row) { [1.0; 3] } else { [1e-4; 3] });
         let open = at_origin(&nothing(), &window, 1.3, 1)[0];
+        // Half the 256 rays look at the window: measured 0.7 %.
         assert_rel(at_origin(&wall(), &window, 1.3, 16)[0], 0.5 * open, 0.03, "half");
     }
 
@@ -234,7 +234,7 @@ mod tests {
         };
         let before = shaded(&wall(), &original, normal);
         let after = shaded(&turned, &shifted(64 - 8), about_y(normal));
-        assert_rel(after, before, 0.02, "noise of the rest; the sun is exact");
+        assert_rel(after, before, 0.02, "noise of the rest, measured 0.7 %; the sun is exact");
         assert!((shaded(&turned, &shifted(8), about_y(normal)) / before - 1.0).abs() > 0.05, "mirrored");
         let open = entering(&nothing(), &surroundings(&original, false), 1.3, 32, [0.0; 3], normal)[0];
         let open_after =
