@@ -95,6 +95,7 @@ impl Fixture {
             lights: &lights,
             ior: f64::from(self.body.medium().ior),
             samples,
+            rays: 16,
         };
         gather.run()
     }
@@ -135,6 +136,7 @@ pub fn light(light: &Light, mm_per_unit: f64) -> translume_reference::Light {
             radiance: light.radiance.map(f64::from),
             axis: DVec3::from(light.axis.map(f64::from)).normalize().to_array(),
             half_angle: light.half_angle.into(),
+            shadow: false,
         },
         other => panic!("the twins do not know {other:?}"),
     }

@@ -20,6 +20,9 @@ const EDGE_PER_DISTANCE: f64 = 0.5;
 /// Longest edge of a patch in units of 1/σ_tr, likewise.
 const EDGE_PER_DECAY: f64 = 1.0;
 
+/// Directions squared towards each light that has an extent and a shadow; the seven points of a patch share the noise.
+const RAYS: u32 = 8;
+
 /// Patches shared by all receivers, at most: 400 bytes each.
 const MAX_PATCHES: f64 = 1e6;
 
@@ -70,7 +73,7 @@ impl<'a> Converged<'a> {
         // Halving edges leaves them between the target and half of it, so a patch holds at least ~1/8 of its square.
         let spare = (MAX_PATCHES - surface.triangles.len() as f64).max(1.0);
         let edge = target_edge.max((8.0 * area / spare).sqrt());
-        let lighting = Lighting::new(surface, lights, medium.ior);
+        let lighting = Lighting::new(surface, lights, medium.ior, RAYS);
         let patches = (0..surface.triangles.len() as u32)
             .into_par_iter()
             .filter(|&triangle| surface.area(triangle) > 0.0)
@@ -191,7 +194,7 @@ mod tests {
 
     /// Irradiance 1 everywhere at eta = 1.
     fn uniform() -> Light {
-        Light::Ambient { radiance: [FRAC_1_PI; 3], axis: [0.0, 1.0, 0.0], half_angle: PI }
+        Light::Ambient { radiance: [FRAC_1_PI; 3], axis: [0.0, 1.0, 0.0], half_angle: PI, shadow: false }
     }
 
     #[test]

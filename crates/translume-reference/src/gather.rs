@@ -59,13 +59,17 @@ pub struct Gather<'a> {
     /// Light is the mean over this number squared of points inside the texel's square, those on the surface; 0 and 1 take
     /// the texel's centre, moved to the edge of its triangle if it lies outside.
     pub samples: u32,
+    /// Light from an extended source that casts a shadow is taken along this number squared of directions from each point,
+    /// spread evenly and jittered anew at each point; 0 counts as 1. It is exact where all of the source is seen, or none. In
+    /// a penumbra a single direction is off in the mean too, as the cosine cannot weigh it; with 4 or more, within 0.2 %.
+    pub rays: u32,
 }
 
 impl Gather<'_> {
     /// All texels, in the atlas's order.
     #[must_use]
     pub fn run(&self) -> Vec<Source> {
-        let lighting = Lighting::new(self.surface, self.lights, self.ior);
+        let lighting = Lighting::new(self.surface, self.lights, self.ior, self.rays);
         let grid = (self.samples > 1).then(|| TriangleGrid::new(self.atlas));
         self.atlas.texels.par_iter().map(|texel| self.source(texel, &lighting, grid.as_ref())).collect()
     }
@@ -213,7 +217,8 @@ mod tests {
     }
 
     fn run(surface: &Surface, atlas: &Atlas, lights: &[Light], ior: f64, samples: u32) -> Vec<Source> {
-        Gather { atlas, rest: &surface.positions, mm_per_unit: 1.0, surface, lights, ior, samples }.run()
+        Gather { atlas, rest: &surface.positions, mm_per_unit: 1.0, surface, lights, ior, samples, rays: 1 }
+            .run()
     }
 
     #[test]
@@ -278,7 +283,7 @@ mod tests {
                 shadow: false,
                 region: half,
             },
-            Light::Ambient { radiance: [1.0 / PI; 3], axis: [0.0, 1.0, 0.0], half_angle: PI },
+            Light::Ambient { radiance: [1.0 / PI; 3], axis: [0.0, 1.0, 0.0], half_angle: PI, shadow: false },
         ];
         for source in run(&surface, &atlas, &lights, 1.0, 1) {
             let expected = if source.position[0] > 0.0 { 2.0 } else { 1.0 };
@@ -320,6 +325,7 @@ mod tests {
             lights: &[],
             ior: 1.3,
             samples: 1,
+            rays: 1,
         };
         let total: f64 = gather.run().iter().map(|source| source.area).sum();
         assert_rel(total, 6.0 * 256.0, 1e-6, "f32 rest areas");

@@ -3,7 +3,7 @@
 //! | module | what it computes |
 //! | --- | --- |
 //! | [`medium`], [`fresnel`], [`dipole`] | the optics: coefficients, exact Fresnel terms, the diffuse reflectance profile |
-//! | [`surface`], [`lights`] | the scene: triangles with ray queries, and what illuminates them |
+//! | [`surface`], [`lights`], [`environment`] | the scene: triangles with ray queries, and what illuminates them |
 //! | [`deform`] | positions and normals of a morphed pose |
 //! | [`gather`] | position, normal, live area and irradiance of every texel, shadows by ray casting |
 //! | [`cluster`] | sums of texels up the tree |
@@ -20,6 +20,7 @@ pub mod composite;
 pub mod converged;
 pub mod deform;
 pub mod dipole;
+pub mod environment;
 pub mod fresnel;
 pub mod gather;
 pub mod lights;
@@ -33,6 +34,7 @@ pub mod surface;
 mod testing;
 
 pub use dipole::Dipole;
+pub use environment::EnvironmentMap;
 pub use lights::Light;
 pub use medium::Medium;
 pub use surface::{Hit, Surface};

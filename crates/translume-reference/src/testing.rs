@@ -1,5 +1,7 @@
 //! Shapes and assertions that several tests share.
 
+use crate::lights::{Lighting, Place};
+use crate::{Light, Surface};
 use translume_mesh::{Atlas, AtlasReport, AtlasVertex, Texel};
 
 pub(crate) fn assert_rel(measured: f64, expected: f64, tolerance: f64, what: &str) {
@@ -76,4 +78,50 @@ pub(crate) fn sphere_exitance(dipole: &crate::Dipole, r: f64) -> f64 {
         (-dipole.sigma_tr * z).exp() - z / d * (-dipole.sigma_tr * d).exp()
     };
     0.5 * dipole.albedo * (g(dipole.z[0]) + g(dipole.z[1]))
+}
+
+/// What one light lets into a place of no triangle.
+pub(crate) fn entering(
+    surface: &Surface,
+    light: &Light,
+    eta: f64,
+    rays: u32,
+    position: [f64; 3],
+    normal: [f64; 3],
+) -> [f64; 3] {
+    let lighting = Lighting::new(surface, std::slice::from_ref(light), eta, rays);
+    lighting.irradiance(Place { position: position.into(), normal: normal.into(), triangle: u32::MAX })
+}
+
+pub(crate) fn nothing() -> Surface {
+    Surface::flat(Vec::new(), Vec::new())
+}
+
+/// The part with x > `from` of a plane at a height, as far as 10⁴ mm.
+pub(crate) fn half_roof(from: f64, height: f64) -> Surface {
+    let far = 1e4;
+    let corners = [[from, -far], [far, -far], [far, far], [from, far]];
+    Surface::flat(corners.map(|[x, z]| [x, height, z]).to_vec(), vec![[0, 1, 2], [0, 2, 3]])
+}
+
+/// A wall that hides all with x > 0 from the origin, to a millionth.
+pub(crate) fn wall() -> Surface {
+    let (x, far) = (1e-3, 1e3);
+    let corners = [[-far, -far], [far, -far], [far, far], [-far, far]];
+    Surface::flat(corners.map(|[y, z]| [x, y, z]).to_vec(), vec![[0, 1, 2], [0, 2, 3]])
+}
+
+/// A horizontal ring of 256 corners around the y axis between two radii; a disc if the first is 0.
+pub(crate) fn ring(radii: [f64; 2], height: f64) -> Surface {
+    let count = 256;
+    let at = |k: u32, radius: f64| {
+        let (sin, cos) = (std::f64::consts::TAU * f64::from(k) / f64::from(count)).sin_cos();
+        [radius * cos, height, radius * sin]
+    };
+    let positions = (0..count).flat_map(|k| radii.map(|radius| at(k, radius))).collect();
+    let quad = |k: u32| {
+        let [a, b, c, d] = [2 * k, 2 * k + 1, 2 * k + 2, 2 * k + 3].map(|v| v % (2 * count));
+        [[a, b, c], [b, d, c]]
+    };
+    Surface::flat(positions, (0..count).flat_map(quad).collect())
 }

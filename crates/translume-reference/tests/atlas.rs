@@ -31,6 +31,7 @@ fn sphere_in_the_sun() {
         lights: &lights,
         ior: SKIN.ior,
         samples: 2,
+        rays: 1,
     }
     .run();
 
