@@ -85,17 +85,28 @@ impl Fixture {
     /// What the twin gathers, averaged over `samples`² points of each texel.
     #[must_use]
     pub fn twin_sources(&self, pose: &Pose, lights: &[Light], samples: u32) -> Vec<Source> {
-        let rest = deform::positions(&self.model.mesh, &[], self.mm_per_unit);
         let lights: Vec<_> = lights.iter().map(|each| light(each, self.mm_per_unit)).collect();
+        self.twin_sources_lit(pose, &lights, [samples, 16])
+    }
+
+    /// The same in lights of the twin, which also knows maps of the environment, with `rays`² rays to each area light or sky.
+    #[must_use]
+    pub fn twin_sources_lit(
+        &self,
+        pose: &Pose,
+        lights: &[translume_reference::Light],
+        [samples, rays]: [u32; 2],
+    ) -> Vec<Source> {
+        let rest = deform::positions(&self.model.mesh, &[], self.mm_per_unit);
         let gather = Gather {
             atlas: &self.model.atlas,
             rest: &rest,
             mm_per_unit: self.mm_per_unit,
             surface: &self.twin_surface(pose),
-            lights: &lights,
+            lights,
             ior: f64::from(self.body.medium().ior),
             samples,
-            rays: 16,
+            rays,
         };
         gather.run()
     }
@@ -132,11 +143,24 @@ pub fn light(light: &Light, mm_per_unit: f64) -> translume_reference::Light {
             shadow: light.shadow,
             region: region(light.region),
         },
+        Light::Rectangle(light) => Twin::Rectangle {
+            center: mm(light.center),
+            half_right: mm(light.half_right),
+            half_up: mm(light.half_up),
+            radiance: light.radiance.map(f64::from),
+            shadow: light.shadow,
+        },
+        Light::Sphere(light) => Twin::Sphere {
+            center: mm(light.center),
+            radius: f64::from(light.radius) * mm_per_unit,
+            radiance: light.radiance.map(f64::from),
+            shadow: light.shadow,
+        },
         Light::Ambient(light) => Twin::Ambient {
             radiance: light.radiance.map(f64::from),
             axis: DVec3::from(light.axis.map(f64::from)).normalize().to_array(),
             half_angle: light.half_angle.into(),
-            shadow: false,
+            shadow: light.shadow,
         },
         other => panic!("the twins do not know {other:?}"),
     }
