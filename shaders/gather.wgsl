@@ -18,8 +18,40 @@
 fn irradiance(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_index) local: u32) {
     let index = item_index(group, groups, local);
     if index >= lighting.texel_count { return; }
-    let receiver = receiver_at(index);
-    var light = sky(index, receiver.normal);
+    let texel = texels[index];
+    let a = triangles[texel.triangle * 3u];
+    let pa = positions[a].xyz;
+    let side_1 = positions[triangles[texel.triangle * 3u + 1u]].xyz - pa;
+    let side_2 = positions[triangles[texel.triangle * 3u + 2u]].xyz - pa;
+    let weights = vec2f(texel.barycentric_1, texel.barycentric_2);
+    let area = texel.area_ratio * 0.5 * length(cross(side_1, side_2));
+    let half_width = 0.25 * sqrt(area);
+    let normal = receiver_at(texel.triangle, clamped(weights), half_width).normal;
+
+    var light = vec3f(0.0);
+    var count = 0.0;
+    let seen = sky_share(index, normal);
+    for (var k = 0u; k < POINTS; k++) {
+        let point = texel.points[k];
+        if point.triangle != NOWHERE {
+            light += entering(receiver_at(point.triangle, unpack2x16unorm(point.weights), half_width), seen);
+            count += 1.0;
+        }
+    }
+    texel_positions[index] = vec4f(pa + side_1 * weights.x + side_2 * weights.y, area);
+    texel_normals[index] = vec4f(normal, 0.0);
+    texel_irradiance[index] = vec4f(light / count, 0.0);
+}
+
+// Weights of the second and third corner moved into the triangle.
+fn clamped(w: vec2f) -> vec2f {
+    let all = max(vec3f(1.0 - w.x - w.y, w.x, w.y), vec3f(0.0));
+    return all.yz / (all.x + all.y + all.z);
+}
+
+// seen: share of the shadowed sky
+fn entering(receiver: Receiver, seen: vec3f) -> vec3f {
+    var light = sky(receiver.normal, seen);
     for (var k = 0u; k < lighting.light_count; k++) {
         if lighting.lights[k].kind >= RECTANGLE {
             light += area_light(k, receiver);
@@ -27,9 +59,7 @@ fn irradiance(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) grou
             light += direct(k, receiver);
         }
     }
-    texel_positions[index] = vec4f(receiver.center, receiver.area);
-    texel_normals[index] = vec4f(receiver.normal, 0.0);
-    texel_irradiance[index] = vec4f(light, 0.0);
+    return light;
 }
 
 fn direct(index: u32, receiver: Receiver) -> vec3f {
@@ -64,7 +94,7 @@ fn area_light(index: u32, receiver: Receiver) -> vec3f {
     return lighting.lights[index].colour * (whole * entered / sum);
 }
 
-// Part of the texel's square inside the box where the light enters.
+// Part of the quarter inside the box where the light enters.
 fn region_fraction(index: u32, receiver: Receiver) -> f32 {
     let extent = max(receiver.half_width * sqrt(max(vec3f(1.0) - receiver.face * receiver.face, vec3f(0.0))), vec3f(1e-6));
     let low = clamp((receiver.position - lighting.lights[index].region_low) / (2.0 * extent) + 0.5, vec3f(0.0), vec3f(1.0));
@@ -73,24 +103,23 @@ fn region_fraction(index: u32, receiver: Receiver) -> f32 {
     return fraction.x * fraction.y * fraction.z;
 }
 
-// Mean over the texel's square, seen from a light or one of its emitters.
+// Mean over the quarter, seen from a light or one of its emitters.
 fn visibility(index: u32, emitter: u32, receiver: Receiver, to_light: vec3f) -> f32 {
     if lighting.lights[index].first_view == NO_SHADOW { return 1.0; }
     let count = lighting.lights[index].view_count;
     let view = shadow_view(lighting.lights[index].first_view + emitter * count, count, to_light);
-    return lit_share(lighting.views[view], receiver, to_light, lighting.filter_side);
+    return lit_share(lighting.views[view], receiver, to_light, (lighting.filter_side + 1u) / 2u);
 }
 
 // Ambient lights and environments.
-fn sky(index: u32, normal: vec3f) -> vec3f {
+fn sky(normal: vec3f, seen: vec3f) -> vec3f {
     var open = environment_irradiance(lighting.open_sky, normal);
     var shadowed = environment_irradiance(lighting.shadowed_sky, normal);
     for (var k = 0u; k < lighting.ambient_count; k++) {
         let light = ambient(k, normal);
         if lighting.ambients[k].shadow == 1u { shadowed += light; } else { open += light; }
     }
-    if lighting.direction_count == 0u { return open; }
-    return open + shadowed * sky_share(index, normal);
+    return open + shadowed * seen;
 }
 
 // The share of the sky's light that the body lets through, by the directions along which that is known.

@@ -9,9 +9,6 @@ struct Directions {
     views: array<ShadowView, 8>,
 }
 
-// Comparisons along each side of a texel's square: each blends four texels of the map, and the sky is blurred anyway.
-const SIDE: u32 = 2u;
-
 @group(0) @binding(0) var<uniform> lighting: Gather;
 @group(0) @binding(1) var<storage, read> texels: array<Texel>;
 @group(0) @binding(2) var<storage, read> triangles: array<u32>;
@@ -26,11 +23,21 @@ const SIDE: u32 = 2u;
 fn visibility(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_index) local: u32) {
     let index = item_index(group, groups, local);
     if index >= lighting.texel_count { return; }
-    let receiver = receiver_at(index);
+    let texel = texels[index];
+    var shares = array<f32, 8>();
+    var count = 0.0;
+    for (var p = 0u; p < POINTS; p++) {
+        let point = texel.points[p];
+        if point.triangle == NOWHERE { continue; }
+        let receiver = receiver_at(point.triangle, unpack2x16unorm(point.weights), 0.0);
+        for (var k = 0u; k < 8u; k++) {
+            shares[k] += lit_share(directions.views[k], receiver, lighting.sky[directions.word * 8u + k].direction, 1u);
+        }
+        count += 1.0;
+    }
     var word = 0u;
     for (var k = 0u; k < 8u; k++) {
-        let share = lit_share(directions.views[k], receiver, lighting.sky[directions.word * 8u + k].direction, SIDE);
-        word |= u32(share * 15.0 + 0.5) << (4u * k);
+        word |= u32(shares[k] / count * 15.0 + 0.5) << (4u * k);
     }
     visible[directions.word * lighting.texel_count + index] = word;
 }

@@ -79,6 +79,11 @@ struct Gather {
     filter_side: u32,
     // 0 where no light of the sky is shadowed.
     direction_count: u32,
+    // Side of a square as large as a texel at rest, mm.
+    texel_width: f32,
+    padding0: u32,
+    padding1: u32,
+    padding2: u32,
     // Environments that are seen from everywhere, and those that the body shadows, as `environment_irradiance` takes them.
     open_sky: array<vec4f, 9>,
     shadowed_sky: array<vec4f, 9>,

@@ -114,7 +114,9 @@ mod tests {
             assert!((mean.w * count as f32 - 80.0 * 40.0).abs() < 0.1, "areas add up: {mean}");
             // A lattice of n points misses the middle by less than a cell's height; measured .31 of a half height for 1, .03 for 16.
             assert!((mean.z - 30.0).abs() < 1e-3 && (mean.y - 20.0).abs() < 20.0 / count as f32, "{mean}");
-            assert!(points.iter().all(|p| p.x == 10.0 && (p.y - 20.0).abs() < 20.0 && (p.z - 30.0).abs() < 40.0));
+            assert!(
+                points.iter().all(|p| p.x == 10.0 && (p.y - 20.0).abs() < 20.0 && (p.z - 30.0).abs() < 40.0)
+            );
         }
     }
 

@@ -172,6 +172,7 @@ impl Body {
         if relit {
             let body = GatherBody {
                 texels: self.extent.texels,
+                texel_width: self.extent.texel_width * to_mm.determinant().abs().cbrt(),
                 flat_normals: self.flat_normals,
                 eta: self.medium.ior,
                 winding,
@@ -278,7 +279,14 @@ impl Body {
         if pending.contains(Stage::Visibility) {
             first_view = self.sky.views.len();
             let (sky, extent) = (&mut self.sky, (texels, indices));
-            stages.visibility.encode(encoder, &stages.shadow, sky, &self.buffers, extent, (&mut work, casters));
+            stages.visibility.encode(
+                encoder,
+                &stages.shadow,
+                sky,
+                &self.buffers,
+                extent,
+                (&mut work, casters),
+            );
         }
         if pending.contains(Stage::Shadow) {
             let mut casters = |pass: &mut wgpu::RenderPass<'_>, slot| casters(pass, first_view + slot);

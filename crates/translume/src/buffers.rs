@@ -2,11 +2,14 @@
 
 use crate::Error;
 use crate::gpu::{self, UNIFORM_STRIDE};
-use crate::layout::{AtlasVertexLayout, Cluster, DeformLayout, GatherLayout, InfluenceLayout, TexelLayout};
+use crate::layout::{
+    AtlasVertexLayout, Cluster, DeformLayout, GatherLayout, InfluenceLayout, LightPointLayout, TexelLayout,
+};
+use crate::light_points::{LightPoint, light_points};
 use crate::stages::cluster::Tree;
 use crate::stages::scatter::SOURCES_PER_DISPATCH;
 use crate::stages::shadow::DepthMaps;
-use glam::{Vec2, Vec3};
+use glam::Vec3;
 use translume_mesh::normals::{NormalAdjacency, smooth_normals};
 use translume_mesh::{Atlas, Mesh};
 use wgpu::BufferUsages;
@@ -48,6 +51,8 @@ pub(crate) struct Extent {
     pub influences_per_vertex: u32,
     pub texels: u32,
     pub atlas_size: u32,
+    /// Side of a square of the mean area of a texel that holds surface, units of the mesh at rest.
+    pub texel_width: f32,
 }
 
 impl Extent {
@@ -60,6 +65,7 @@ impl Extent {
             influences_per_vertex: mesh.skin.as_ref().map_or(0, |skin| skin.per_vertex as u32),
             texels: atlas.texels.len() as u32,
             atlas_size: atlas.size,
+            texel_width: mean_width(atlas),
         }
     }
 
@@ -75,7 +81,7 @@ impl Extent {
         let adjacency = 4 * (u64::from(self.vertices) + 6 * u64::from(self.triangles));
         let bindings = [
             ("atlas", pixels, SMALLER_ATLAS),
-            ("texels", 32 * u64::from(self.texels), SMALLER_ATLAS),
+            ("texels", size_of::<TexelLayout>() as u64 * u64::from(self.texels), SMALLER_ATLAS),
             ("clusters", clusters, SMALLER_ATLAS),
             ("mesh", 36 * u64::from(self.vertices), SMALLER_MESH),
             ("mesh", adjacency, SMALLER_MESH),
@@ -225,34 +231,27 @@ fn texel_layouts(mesh: &Mesh, atlas: &Atlas) -> Vec<TexelLayout> {
         let [a, b, c] = mesh.corners(triangle as usize).map(Vec3::from);
         0.5 * (b - a).cross(c - a).length()
     };
-    let texels = atlas.texels.iter();
+    let texels = atlas.texels.iter().zip(light_points(atlas));
     texels
-        .map(|texel| {
-            let [per_column, per_row] = weights_per_pixel(atlas, texel.triangle);
-            TexelLayout {
-                triangle: texel.triangle,
-                barycentric_1: texel.barycentric[0],
-                barycentric_2: texel.barycentric[1],
-                area_ratio: if texel.area > 0.0 {
-                    texel.area / area(texel.triangle).max(f32::MIN_POSITIVE)
-                } else {
-                    0.0
-                },
-                per_column,
-                per_row,
-            }
+        .map(|(texel, points)| TexelLayout {
+            triangle: texel.triangle,
+            barycentric_1: texel.barycentric[0],
+            barycentric_2: texel.barycentric[1],
+            area_ratio: if texel.area > 0.0 {
+                texel.area / area(texel.triangle).max(f32::MIN_POSITIVE)
+            } else {
+                0.0
+            },
+            points: points.map(|LightPoint { triangle, weights }| {
+                let [b, c] = weights.map(|weight| (weight * 65_535.0).round() as u32);
+                LightPointLayout { triangle, weights: b | c << 16 }
+            }),
         })
         .collect()
 }
 
-/// How the weights of a triangle's second and third corner change from pixel to pixel of the atlas, along its rows and columns; 0 for a
-/// triangle that has no area there.
-fn weights_per_pixel(atlas: &Atlas, triangle: u32) -> [[f32; 2]; 2] {
-    let [a, b, c] = atlas.triangles[triangle as usize]
-        .map(|v| Vec2::from(atlas.vertices[v as usize].uv) * atlas.size as f32);
-    let (b, c) = (b - a, c - a);
-    let per_column = Vec2::new(c.y, -b.y) / b.perp_dot(c);
-    let per_row = Vec2::new(-c.x, b.x) / b.perp_dot(c);
-    let finite = |v: Vec2| if v.is_finite() { v.to_array() } else { [0.0; 2] };
-    [finite(per_column), finite(per_row)]
+fn mean_width(atlas: &Atlas) -> f32 {
+    let areas = atlas.texels.iter().map(|texel| texel.area).filter(|area| *area > 0.0);
+    let (count, sum) = areas.fold((0.0, 0.0), |(count, sum), area| (count + 1.0, sum + f64::from(area)));
+    (sum / f64::max(count, 1.0)).sqrt() as f32
 }

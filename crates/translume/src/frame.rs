@@ -122,9 +122,7 @@ pub(crate) fn caster_corners(casters: &Casters, scale: f32) -> Result<[Vec3; 8],
             remedy: "give finite corners, the lower one first",
         });
     }
-    Ok(std::array::from_fn(|k| {
-        Vec3::select(glam::BVec3::new(k & 1 > 0, k & 2 > 0, k & 4 > 0), high, low)
-    }))
+    Ok(std::array::from_fn(|k| Vec3::select(glam::BVec3::new(k & 1 > 0, k & 2 > 0, k & 4 > 0), high, low)))
 }
 
 /// Checks that irradiance can be copied for this many texels.

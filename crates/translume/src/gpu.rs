@@ -141,10 +141,8 @@ pub(crate) struct Pass<'a> {
 
 impl<'a> Pass<'a> {
     pub fn begin(encoder: &'a mut wgpu::CommandEncoder, label: &str, work: &'a mut Work) -> Self {
-        let pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
-            label: Some(label),
-            timestamp_writes: None,
-        });
+        let pass = encoder
+            .begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some(label), timestamp_writes: None });
         Self { pass, work }
     }
 

@@ -116,6 +116,8 @@ pub(crate) struct GatherLayout {
     pub winding: f32,
     pub filter_side: u32,
     pub direction_count: u32,
+    pub texel_width: f32,
+    pub padding: [u32; 3],
     pub open_sky: [[f32; 4]; 9],
     pub shadowed_sky: [[f32; 4]; 9],
     pub lights: [LightLayout; MAX_LIGHTS],
@@ -132,8 +134,15 @@ pub(crate) struct TexelLayout {
     pub barycentric_1: f32,
     pub barycentric_2: f32,
     pub area_ratio: f32,
-    pub per_column: [f32; 2],
-    pub per_row: [f32; 2],
+    pub points: [LightPointLayout; 4],
+}
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub(crate) struct LightPointLayout {
+    pub triangle: u32,
+    /// Weights of the second and third corner in 65,535ths, the second in the lower half.
+    pub weights: u32,
 }
 
 #[repr(C)]
@@ -283,6 +292,7 @@ mod tests {
                 winding,
                 filter_side,
                 direction_count,
+                texel_width,
                 open_sky,
                 shadowed_sky,
                 lights,
@@ -292,7 +302,8 @@ mod tests {
                 sky
             ]
         );
-        check!(GATHER, "Texel", TexelLayout, [triangle, barycentric_1, barycentric_2, area_ratio, per_column, per_row]);
+        check!(GATHER, "Texel", TexelLayout, [triangle, barycentric_1, barycentric_2, area_ratio, points]);
+        check!(GATHER, "LightPoint", LightPointLayout, [triangle, weights]);
         check!(CLUSTER, "Level", LevelLayout, [child_count, node_count, child_offset, node_offset]);
         check!(CLUSTER, "Cluster", Cluster, [centroid, spread, power, radius, normal, area]);
         check!(SCATTER, "KernelTable", KernelTableLayout, [least_r2, least_s2, columns, rows]);

@@ -46,6 +46,7 @@ mod kernel_table;
 mod kernel_texture;
 mod layout;
 mod light;
+mod light_points;
 mod lighting;
 mod medium;
 mod pose;
@@ -117,7 +118,11 @@ pub fn largest_atlas(limits: &wgpu::Limits) -> u32 {
 fn check_limits(limits: &wgpu::Limits) -> Result<(), Error> {
     let needs = [
         ("max_storage_buffers_per_shader_stage", 8, limits.max_storage_buffers_per_shader_stage),
-        ("max_uniform_buffer_binding_size", size_of::<layout::GatherLayout>() as u32, limits.max_uniform_buffer_binding_size as u32),
+        (
+            "max_uniform_buffer_binding_size",
+            size_of::<layout::GatherLayout>() as u32,
+            limits.max_uniform_buffer_binding_size as u32,
+        ),
         ("max_compute_invocations_per_workgroup", 64, limits.max_compute_invocations_per_workgroup),
         ("max_compute_workgroups_per_dimension", 65_535, limits.max_compute_workgroups_per_dimension),
         ("max_storage_textures_per_shader_stage", 1, limits.max_storage_textures_per_shader_stage),

@@ -10,6 +10,8 @@ use glam::Vec3;
 /// What the gather needs of a body beside the lights.
 pub(crate) struct GatherBody<'a> {
     pub texels: u32,
+    /// Of a texel, mm.
+    pub texel_width: f32,
     pub flat_normals: bool,
     pub eta: f32,
     pub winding: f32,
@@ -41,6 +43,7 @@ pub(crate) fn has_shadowed_sky(lights: &[Light]) -> bool {
 pub(crate) fn gather(lights: &[Light], body: &GatherBody<'_>) -> Result<Gathering, Error> {
     let mut layout: Box<GatherLayout> = bytemuck::zeroed_box();
     layout.texel_count = body.texels;
+    layout.texel_width = body.texel_width;
     layout.flat_normals = u32::from(body.flat_normals);
     layout.eta = body.eta;
     layout.winding = body.winding;
@@ -78,8 +81,11 @@ pub(crate) fn gather(lights: &[Light], body: &GatherBody<'_>) -> Result<Gatherin
 }
 
 fn check_room(emitters: usize, views: usize) -> Result<(), Error> {
-    const REMEDY: &str = "switch some shadows off or take fewer area_points: a light near the body takes six maps a point";
-    for (what, count, limit) in [("points of area lights", emitters, MAX_EMITTERS), ("depth maps", views, MAX_VIEWS)] {
+    const REMEDY: &str =
+        "switch some shadows off or take fewer area_points: a light near the body takes six maps a point";
+    for (what, count, limit) in
+        [("points of area lights", emitters, MAX_EMITTERS), ("depth maps", views, MAX_VIEWS)]
+    {
         if count > limit {
             return Err(Error::Frame {
                 problem: format!("{count} {what} or more, but at most {limit} fit"),
@@ -118,9 +124,7 @@ fn light_layout(
     // As bright in every direction, wherever the light enters.
     (layout.cone_scale, layout.cone_offset) = (0.0, 1.0);
     (layout.kind, layout.vector, layout.colour) = match light {
-        Light::Directional(light) => {
-            (0, Vec3::from(light.to_light).normalize().to_array(), light.irradiance)
-        }
+        Light::Directional(light) => (0, Vec3::from(light.to_light).normalize().to_array(), light.irradiance),
         Light::Point(light) => (1, mm(light.position), in_mm(light.intensity)),
         Light::Spot(light) => {
             layout.axis = Vec3::from(light.direction).normalize().to_array();
@@ -192,12 +196,19 @@ fn sky_layout(layout: &mut GatherLayout, lights: &[Light], body: &GatherBody<'_>
         let mut radiance = Vec3::ZERO;
         for light in lights {
             radiance += match light {
-                Light::Ambient(light) if light.shadow => cone_radiance(light, *direction, body.directions.len()),
+                Light::Ambient(light) if light.shadow => {
+                    cone_radiance(light, *direction, body.directions.len())
+                }
                 Light::Environment(light) if light.shadow => environment_radiance(light, *direction),
                 _ => Vec3::ZERO,
             };
         }
-        *slot = SkyLayout { direction: direction.to_array(), padding0: 0, radiance: radiance.to_array(), padding1: 0 };
+        *slot = SkyLayout {
+            direction: direction.to_array(),
+            padding0: 0,
+            radiance: radiance.to_array(),
+            padding1: 0,
+        };
     }
 }
 

@@ -8,7 +8,7 @@ pub struct ShadowOptions {
     /// Width of the depth map of a directional, point or spot light in texels, from 16 to the device's
     /// `max_texture_dimension_2d`. The maps of an area light share one of this width.
     pub resolution: u32,
-    /// Comparisons with a depth map along each side of a texel's square, 1..=8.
+    /// Comparisons with a depth map along each side of a texel's square, 1..=8; at least two are made.
     pub filter: u32,
     /// Points of an area light that cast a shadow each, 1..=64.
     pub area_points: u32,

@@ -66,9 +66,15 @@ pub(crate) struct LightViews {
 }
 
 /// The emitters and views of one light over a body. `light` is in world units; `scale` takes it to millimetres.
-pub(crate) fn light_views(light: &Light, scale: f32, subject: &Subject<'_>, options: &ShadowOptions) -> LightViews {
+pub(crate) fn light_views(
+    light: &Light,
+    scale: f32,
+    subject: &Subject<'_>,
+    options: &ShadowOptions,
+) -> LightViews {
     let resolution = options.resolution;
-    let whole = |views: Vec<View>| LightViews { views_per_emitter: views.len() as u32, views, emitters: Vec::new() };
+    let whole =
+        |views: Vec<View>| LightViews { views_per_emitter: views.len() as u32, views, emitters: Vec::new() };
     match light {
         Light::Directional(light) if light.shadow => {
             whole(vec![directional_view(Vec3::from(light.to_light).normalize(), subject, resolution, 0)])
@@ -80,7 +86,13 @@ pub(crate) fn light_views(light: &Light, scale: f32, subject: &Subject<'_>, opti
             let position = Vec3::from(light.position) * scale;
             let views = point_views(position, subject, resolution, 0);
             if views.len() > 1 && light.outer_angle <= WIDEST_CONE {
-                whole(vec![cone_view(position, light.direction.into(), light.outer_angle, subject, resolution)])
+                whole(vec![cone_view(
+                    position,
+                    light.direction.into(),
+                    light.outer_angle,
+                    subject,
+                    resolution,
+                )])
             } else {
                 whole(views)
             }
@@ -98,7 +110,12 @@ pub(crate) fn light_views(light: &Light, scale: f32, subject: &Subject<'_>, opti
 }
 
 /// All the points of an area light together take as much room as one point light.
-fn area_views(emitters: Vec<Vec4>, shadow: bool, subject: &Subject<'_>, options: &ShadowOptions) -> LightViews {
+fn area_views(
+    emitters: Vec<Vec4>,
+    shadow: bool,
+    subject: &Subject<'_>,
+    options: &ShadowOptions,
+) -> LightViews {
     if !shadow {
         return LightViews { emitters, ..Default::default() };
     }
@@ -263,7 +280,8 @@ mod tests {
 
     fn views(light: &Light) -> Vec<View> {
         let corners = unit_box();
-        light_views(light, 1.0, &Subject { corners: &corners, casters: None }, &ShadowOptions::default()).views
+        light_views(light, 1.0, &Subject { corners: &corners, casters: None }, &ShadowOptions::default())
+            .views
     }
 
     fn holds(view: &View, point: Vec3) -> bool {

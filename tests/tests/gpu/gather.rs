@@ -37,7 +37,12 @@ fn lights(shadow: bool) -> [Light; 4] {
 }
 
 fn cone() -> [Light; 1] {
-    [Light::Ambient(AmbientLight { radiance: [1.0, 0.5, 0.25], axis: [0.3, 2.0, 0.5], half_angle: 0.3, shadow: false })]
+    [Light::Ambient(AmbientLight {
+        radiance: [1.0, 0.5, 0.25],
+        axis: [0.3, 2.0, 0.5],
+        half_angle: 0.3,
+        shadow: false,
+    })]
 }
 
 fn pose(model: &Model) -> Pose {
@@ -255,27 +260,58 @@ fn scratch() {
     let size: u32 = std::env::var("SIZE").map_or(512, |s| s.parse().unwrap());
     let mut models = vec![("creature", Model::new(translume_mesh::builtin::creature(), size))];
     if let Some(folder) = std::env::var_os("TRANSLUME_MODELS") {
-        let mut mesh = translume_mesh::load::load(&std::path::Path::new(&folder).join("stanford-bunny.obj")).unwrap().mesh;
+        let mut mesh = translume_mesh::load::load(&std::path::Path::new(&folder).join("stanford-bunny.obj"))
+            .unwrap()
+            .mesh;
         let s = 100.0 / mesh.diagonal();
-        for p in &mut mesh.positions { *p = p.map(|x| x * s); }
+        for p in &mut mesh.positions {
+            *p = p.map(|x| x * s);
+        }
         models.push(("bunny", Model::new(mesh, size)));
     }
     for (name, model) in &models {
-        let b = model.mesh.positions.iter().fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(l, h), p| (l.min(Vec3::from(*p)), h.max(Vec3::from(*p))));
+        let b = model.mesh.positions.iter().fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(l, h), p| {
+            (l.min(Vec3::from(*p)), h.max(Vec3::from(*p)))
+        });
         let c = (b.0 + b.1) * 0.5;
         let d = b.0.distance(b.1);
         let all = [
-            ("directional", Light::Directional(DirectionalLight { to_light: [0.3, 0.9, -0.2], ..Default::default() })),
-            ("point", Light::Point(PointLight { position: (c + Vec3::new(-0.5, 0.6, 0.7) * d).to_array(), ..Default::default() })),
-            ("point near", Light::Point(PointLight { position: (c + Vec3::new(-0.2, 0.4, 0.35) * d).to_array(), ..Default::default() })),
-            ("spot", Light::Spot(SpotLight { position: (c + Vec3::new(0.5, 0.8, 0.7) * d).to_array(), direction: [-0.5, -0.8, -0.7], ..Default::default() })),
+            (
+                "directional",
+                Light::Directional(DirectionalLight { to_light: [0.3, 0.9, -0.2], ..Default::default() }),
+            ),
+            (
+                "point",
+                Light::Point(PointLight {
+                    position: (c + Vec3::new(-0.5, 0.6, 0.7) * d).to_array(),
+                    ..Default::default()
+                }),
+            ),
+            (
+                "point near",
+                Light::Point(PointLight {
+                    position: (c + Vec3::new(-0.2, 0.4, 0.35) * d).to_array(),
+                    ..Default::default()
+                }),
+            ),
+            (
+                "spot",
+                Light::Spot(SpotLight {
+                    position: (c + Vec3::new(0.5, 0.8, 0.7) * d).to_array(),
+                    direction: [-0.5, -0.8, -0.7],
+                    ..Default::default()
+                }),
+            ),
         ];
         let pose = Pose::rest(model.mesh.targets.len());
         let mut fixture = Fixture::new(model, |d| d.medium = Medium::MARBLE);
         for (kind, light) in all {
             let twin = luminous(&fixture.twin_sources(&pose, &[light], 4));
             for res in [1024, 2048, 4096] {
-                fixture.body.set_shadows(translume::ShadowOptions { resolution: res, ..Default::default() }).unwrap();
+                fixture
+                    .body
+                    .set_shadows(translume::ShadowOptions { resolution: res, ..Default::default() })
+                    .unwrap();
                 let start = std::time::Instant::now();
                 fixture.light(&pose.frame(&[light]));
                 let gpu = luminous(&fixture.sources());
@@ -283,28 +319,74 @@ fn scratch() {
                 let g: Vec<f64> = gpu.iter().map(|e| e[0]).collect();
                 let t: Vec<f64> = twin.iter().map(|e| e[0]).collect();
                 let m = translume_reference::metrics::compare(&g, &t, None).unwrap();
-                let worse = g.iter().zip(&t).filter(|(g, t)| (**g - **t).abs() > 0.5 * m.p99 / m.relative_p99).count();
+                let worse = g
+                    .iter()
+                    .zip(&t)
+                    .filter(|(g, t)| (**g - **t).abs() > 0.5 * m.p99 / m.relative_p99)
+                    .count();
                 let src = fixture.sources();
                 let mask: Vec<bool> = src.iter().map(|s| s.area > 0.0).collect();
                 let m2 = translume_reference::metrics::compare(&g, &t, Some(&mask)).unwrap();
-                let full: Vec<bool> = { let a = src.iter().map(|s| s.area).fold(0.0, f64::max); src.iter().map(|s| s.area > 0.4 * a).collect() };
+                let full: Vec<bool> = {
+                    let a = src.iter().map(|s| s.area).fold(0.0, f64::max);
+                    src.iter().map(|s| s.area > 0.4 * a).collect()
+                };
                 let m3 = translume_reference::metrics::compare(&g, &t, Some(&full)).unwrap();
                 if let Light::Directional(l) = light {
                     let surface = fixture.twin_surface(&pose);
                     let dir = DVec3::from(l.to_light.map(f64::from)).normalize();
-                    let mut parts = [0.0; 6]; let mut total = 0.0; let mut counts = [0; 6];
+                    let mut parts = [0.0; 6];
+                    let mut total = 0.0;
+                    let mut counts = [0; 6];
                     for (k, texel) in model.atlas.texels.iter().enumerate() {
                         let fc = DVec3::from(surface.face_normal(texel.triangle)).dot(dir);
                         let sc = DVec3::from(src[k].normal).dot(dir);
-                        let e = (g[k] - t[k]).powi(2); total += e;
-                        let partial = t[k] > 0.02 && g[k] > 0.02 ;
-                        let class = if fc.abs() < 0.05 || fc * sc < 0.0 { 0 } else if fc < 0.15 { 1 } else if src[k].area == 0.0 { 2 } else if partial { 3 } else if t[k] <= 0.02 {4} else {5};
-                        parts[class] += e; counts[class] += (e > 0.01) as usize;
+                        let e = (g[k] - t[k]).powi(2);
+                        total += e;
+                        let partial = t[k] > 0.02 && g[k] > 0.02;
+                        let class = if fc.abs() < 0.05 || fc * sc < 0.0 {
+                            0
+                        } else if fc < 0.15 {
+                            1
+                        } else if src[k].area == 0.0 {
+                            2
+                        } else if partial {
+                            3
+                        } else if t[k] <= 0.02 {
+                            4
+                        } else {
+                            5
+                        };
+                        parts[class] += e;
+                        counts[class] += (e > 0.01) as usize;
                     }
-                    println!("   parts: terminator {:.3} grazing {:.3} rim {:.3} both {:.3} leak {:.3} dark {:.3} counts {counts:?}", parts[0]/total, parts[1]/total, parts[2]/total, parts[3]/total, parts[4]/total, parts[5]/total);
+                    println!(
+                        "   parts: terminator {:.3} grazing {:.3} rim {:.3} both {:.3} leak {:.3} dark {:.3} counts {counts:?}",
+                        parts[0] / total,
+                        parts[1] / total,
+                        parts[2] / total,
+                        parts[3] / total,
+                        parts[4] / total,
+                        parts[5] / total
+                    );
                 }
-                println!("   covered {:.4} {:+.4}  full {:.4} {:+.4} counts {} {} {}", m2.relative_rmse, m2.bias, m3.relative_rmse, m3.bias, g.len(), m2.count, m3.count);
-                println!("{name} {kind} {res}: rmse {:.4} rms {:.4} bias {:+.4} bad {:.4} {ms} ms", m.relative_rmse, relative_rmse(&gpu, &twin), m.bias, worse as f64 / g.len() as f64);
+                println!(
+                    "   covered {:.4} {:+.4}  full {:.4} {:+.4} counts {} {} {}",
+                    m2.relative_rmse,
+                    m2.bias,
+                    m3.relative_rmse,
+                    m3.bias,
+                    g.len(),
+                    m2.count,
+                    m3.count
+                );
+                println!(
+                    "{name} {kind} {res}: rmse {:.4} rms {:.4} bias {:+.4} bad {:.4} {ms} ms",
+                    m.relative_rmse,
+                    relative_rmse(&gpu, &twin),
+                    m.bias,
+                    worse as f64 / g.len() as f64
+                );
             }
         }
     }

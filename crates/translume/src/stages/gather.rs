@@ -4,7 +4,7 @@
 //! twin   `translume_reference::gather`                                  WGSL    `gather.wgsl`
 
 use crate::buffers::Buffers;
-use crate::gpu::{self, Pass, COMPARISON, DEPTH_MAPS, READ, UNIFORM, WRITE};
+use crate::gpu::{self, COMPARISON, DEPTH_MAPS, Pass, READ, UNIFORM, WRITE};
 use crate::stages::shadow::DepthMaps;
 
 pub(crate) struct Gather {

@@ -5,7 +5,7 @@
 
 use crate::Error;
 use crate::buffers::Buffers;
-use crate::gpu::{self, Pass, FLOAT_TEXTURE, READ, UNIFORM_ARRAY, UNIFORM_STRIDE, WRITE};
+use crate::gpu::{self, FLOAT_TEXTURE, Pass, READ, UNIFORM_ARRAY, UNIFORM_STRIDE, WRITE};
 use crate::kernel_table::KernelTableLayout;
 use crate::layout::ScatterLayout;
 use crate::profile::Dipole;
@@ -129,13 +129,7 @@ impl Scatter {
         bytes
     }
 
-    pub fn encode(
-        &self,
-        pass: &mut Pass<'_>,
-        group: &wgpu::BindGroup,
-        method: Method,
-        texels: u32,
-    ) {
+    pub fn encode(&self, pass: &mut Pass<'_>, group: &wgpu::BindGroup, method: Method, texels: u32) {
         match method {
             Method::AllPairs => {
                 pass.set_pipeline(&self.all_pairs);

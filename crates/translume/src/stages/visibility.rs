@@ -5,13 +5,13 @@
 //!
 //! What a texel sees stays with it while the body moves, so a frame may renew some directions and keep the others.
 
+use crate::ShadowOptions;
 use crate::buffers::Buffers;
 use crate::gpu::{self, COMPARISON, DEPTH_MAPS, Pass, READ, UNIFORM, UNIFORM_ARRAY, WRITE};
 use crate::layout::DirectionsLayout;
 use crate::lighting::view_layout;
 use crate::shadow_view::{Subject, Tile, View, sky_view};
 use crate::stages::shadow::{DepthMaps, DrawCasters, Shadow};
-use crate::ShadowOptions;
 use glam::Vec3;
 
 /// Directions that share a word of a texel.
@@ -120,8 +120,7 @@ impl SkyMemory {
             layout.word = word as u32;
             for (slot, direction) in (0..).zip(&self.directions[word * PER_WORD..][..PER_WORD]) {
                 let square = (k % (PER_BATCH / PER_WORD) * PER_WORD) as u32 + slot;
-                let tile =
-                    Tile { layer: 0, x: square % SQUARES * width, y: square / SQUARES * width, width };
+                let tile = Tile { layer: 0, x: square % SQUARES * width, y: square / SQUARES * width, width };
                 let view = sky_view(*direction, subject, tile);
                 layout.views[slot as usize] = view_layout(&view, SQUARES * width);
                 self.views.push(view);
