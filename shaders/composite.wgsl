@@ -23,7 +23,6 @@ struct Composite {
 @group(0) @binding(3) var exitance: texture_2d<f32>;
 @group(0) @binding(4) var<uniform> lighting: Gather;
 @group(0) @binding(5) var shadow_maps: texture_depth_2d_array;
-@group(0) @binding(6) var shadow_sampler: sampler_comparison;
 
 struct Fragment {
     @builtin(position) clip: vec4f,

@@ -12,7 +12,6 @@
 @group(0) @binding(7) var<storage, read_write> texel_normals: array<vec4f>;
 @group(0) @binding(8) var<storage, read_write> texel_irradiance: array<vec4f>;
 @group(0) @binding(9) var shadow_maps: texture_depth_2d_array;
-@group(0) @binding(10) var shadow_sampler: sampler_comparison;
 
 @compute @workgroup_size(64)
 fn irradiance(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_index) local: u32) {
@@ -25,8 +24,7 @@ fn irradiance(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) grou
     let side_2 = positions[triangles[texel.triangle * 3u + 2u]].xyz - pa;
     let weights = vec2f(texel.barycentric_1, texel.barycentric_2);
     let area = texel.area_ratio * 0.5 * length(cross(side_1, side_2));
-    let half_width = 0.25 * sqrt(area);
-    let normal = receiver_at(texel.triangle, clamped(weights), half_width).normal;
+    let normal = receiver_at(texel.triangle, clamped(weights), area).normal;
 
     var light = vec3f(0.0);
     var count = 0.0;
@@ -34,7 +32,7 @@ fn irradiance(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) grou
     for (var k = 0u; k < POINTS; k++) {
         let point = texel.points[k];
         if point.triangle != NOWHERE {
-            light += entering(receiver_at(point.triangle, unpack2x16unorm(point.weights), half_width), seen);
+            light += entering(receiver_at(point.triangle, unpack2x16unorm(point.weights), area), seen);
             count += 1.0;
         }
     }

@@ -16,8 +16,7 @@ struct Directions {
 @group(0) @binding(4) var<storage, read> normals: array<vec4f>;
 @group(0) @binding(5) var<storage, read_write> visible: array<u32>;
 @group(0) @binding(6) var shadow_maps: texture_depth_2d_array;
-@group(0) @binding(7) var shadow_sampler: sampler_comparison;
-@group(0) @binding(8) var<uniform> directions: Directions;
+@group(0) @binding(7) var<uniform> directions: Directions;
 
 @compute @workgroup_size(64)
 fn visibility(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_index) local: u32) {

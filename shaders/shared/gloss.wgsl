@@ -41,7 +41,7 @@ fn gloss_of(index: u32, emitter: u32, arriving: Arrival, roughness: f32, surface
     if lighting.lights[index].first_view != NO_SHADOW {
         let count = lighting.lights[index].view_count;
         let view = lighting.views[shadow_view(lighting.lights[index].first_view + emitter * count, count, arriving.to_light)];
-        let lifted = lift(view, surface.position, surface.face, 0.0);
+        let lifted = lift(view, surface.position, surface.face, tangent_between(surface.normal, surface.face), 0.0);
         let tangent = any_perpendicular(surface.face);
         lit = lit_at(view, lifted, depth_slope(view, lifted, tangent, cross(surface.face, tangent)));
     }

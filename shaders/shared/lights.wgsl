@@ -79,11 +79,6 @@ struct Gather {
     filter_side: u32,
     // 0 where no light of the sky is shadowed.
     direction_count: u32,
-    // Side of a square as large as a texel at rest, mm.
-    texel_width: f32,
-    padding0: u32,
-    padding1: u32,
-    padding2: u32,
     // Environments that are seen from everywhere, and those that the body shadows, as `environment_irradiance` takes them.
     open_sky: array<vec4f, 9>,
     shadowed_sky: array<vec4f, 9>,
@@ -126,4 +121,9 @@ fn safe_normalize(v: vec3f, fallback: vec3f) -> vec3f {
 fn any_perpendicular(n: vec3f) -> vec3f {
     let axis = select(vec3f(1.0, 0.0, 0.0), vec3f(0.0, 1.0, 0.0), abs(n.x) > 0.7);
     return safe_normalize(cross(axis, n), axis);
+}
+
+// Tangent of the angle between two unit vectors, up to 5.
+fn tangent_between(a: vec3f, b: vec3f) -> f32 {
+    return length(cross(a, b)) / max(dot(a, b), 0.2);
 }

@@ -136,9 +136,11 @@ impl Gather<'_> {
     }
 }
 
-/// Weights moved into the triangle: negative ones become 0, the rest is renormalised.
+/// Weights moved into the triangle and renormalised. They end a little inside: a ray from the very edge of a crease starts on both of
+/// its triangles, and neither shadows it.
 fn clamped([b, c]: [f64; 2]) -> [f64; 2] {
-    let [a, b, c] = [1.0 - b - c, b, c].map(|weight| weight.max(0.0));
+    const INSIDE: f64 = 1e-4;
+    let [a, b, c] = [1.0 - b - c, b, c].map(|weight| weight.max(INSIDE));
     [b / (a + b + c), c / (a + b + c)]
 }
 

@@ -172,7 +172,6 @@ impl Body {
         if relit {
             let body = GatherBody {
                 texels: self.extent.texels,
-                texel_width: self.extent.texel_width * to_mm.determinant().abs().cbrt(),
                 flat_normals: self.flat_normals,
                 eta: self.medium.ior,
                 winding,

@@ -51,8 +51,6 @@ pub(crate) struct Extent {
     pub influences_per_vertex: u32,
     pub texels: u32,
     pub atlas_size: u32,
-    /// Side of a square of the mean area of a texel that holds surface, units of the mesh at rest.
-    pub texel_width: f32,
 }
 
 impl Extent {
@@ -65,7 +63,6 @@ impl Extent {
             influences_per_vertex: mesh.skin.as_ref().map_or(0, |skin| skin.per_vertex as u32),
             texels: atlas.texels.len() as u32,
             atlas_size: atlas.size,
-            texel_width: mean_width(atlas),
         }
     }
 
@@ -248,10 +245,4 @@ fn texel_layouts(mesh: &Mesh, atlas: &Atlas) -> Vec<TexelLayout> {
             }),
         })
         .collect()
-}
-
-fn mean_width(atlas: &Atlas) -> f32 {
-    let areas = atlas.texels.iter().map(|texel| texel.area).filter(|area| *area > 0.0);
-    let (count, sum) = areas.fold((0.0, 0.0), |(count, sum), area| (count + 1.0, sum + f64::from(area)));
-    (sum / f64::max(count, 1.0)).sqrt() as f32
 }

@@ -27,13 +27,12 @@ pub(crate) const FLOAT_TEXTURE: BindingType = BindingType::Texture {
     multisampled: false,
 };
 
-/// Depth maps, and how they are compared with.
+/// Depth maps.
 pub(crate) const DEPTH_MAPS: BindingType = BindingType::Texture {
     sample_type: wgpu::TextureSampleType::Depth,
     view_dimension: wgpu::TextureViewDimension::D2Array,
     multisampled: false,
 };
-pub(crate) const COMPARISON: BindingType = BindingType::Sampler(wgpu::SamplerBindingType::Comparison);
 
 /// Uniforms picked by dynamic offset stand this far apart (WebGPU's default alignment).
 pub(crate) const UNIFORM_STRIDE: u64 = 256;

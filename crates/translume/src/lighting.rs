@@ -10,8 +10,6 @@ use glam::Vec3;
 /// What the gather needs of a body beside the lights.
 pub(crate) struct GatherBody<'a> {
     pub texels: u32,
-    /// Of a texel, mm.
-    pub texel_width: f32,
     pub flat_normals: bool,
     pub eta: f32,
     pub winding: f32,
@@ -43,7 +41,6 @@ pub(crate) fn has_shadowed_sky(lights: &[Light]) -> bool {
 pub(crate) fn gather(lights: &[Light], body: &GatherBody<'_>) -> Result<Gathering, Error> {
     let mut layout: Box<GatherLayout> = bytemuck::zeroed_box();
     layout.texel_count = body.texels;
-    layout.texel_width = body.texel_width;
     layout.flat_normals = u32::from(body.flat_normals);
     layout.eta = body.eta;
     layout.winding = body.winding;

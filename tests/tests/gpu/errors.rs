@@ -51,7 +51,7 @@ fn bad_frames_are_refused_by_name() {
     refused(&mut fixture, &pose(&[0.3]).frame(&[aimless]), &["light 0", "direction"]);
     refused(&mut fixture, &pose(&[0.3]).frame(&[lamp(); 65]), &["65", "64"]);
     let near = Light::Point(PointLight { position: [0.0, 60.0, 60.0], ..Default::default() });
-    refused(&mut fixture, &pose(&[0.3]).frame(&[near; 11]), &["66 depth maps", "64"]);
+    refused(&mut fixture, &pose(&[0.3]).frame(&[near; 43]), &["258 depth maps", "256"]);
 }
 
 #[test]
@@ -86,7 +86,7 @@ fn bad_joints_and_warps_are_refused_by_name() {
     let black_hole = Light::Point(PointLight { intensity: [-1.0; 3], ..Default::default() });
     refused(&mut fixture, &warp(|warp| warp.bend = 1.0).frame(&[black_hole]), &["light 0"]);
     let near = Light::Point(PointLight { position: [0.0, 0.0, 60.0], ..Default::default() });
-    refused(&mut fixture, &warp(|warp| warp.bend = 1.0).frame(&[near; 11]), &["66 depth maps"]);
+    refused(&mut fixture, &warp(|warp| warp.bend = 1.0).frame(&[near; 43]), &["258 depth maps"]);
 
     let mut rigid = Fixture::new(&creature(), |_| ());
     refused(&mut rigid, &joints(&[Mat4::IDENTITY]).frame(&[]), &["1 joint matrices", "0 joints"]);
@@ -153,6 +153,6 @@ fn bad_bodies_are_refused_by_name() {
         assert!(message.contains("mm per unit"), "[{}] {message}", gpu().adapter_name);
     }
     let message = Fixture::try_new(&sphere(), |d| d.shadows.resolution = 8).err().unwrap().to_string();
-    assert!(message.contains("depth maps"), "[{}] {message}", gpu().adapter_name);
+    assert!(message.contains("resolution is 8"), "[{}] {message}", gpu().adapter_name);
     Fixture::try_new(&sphere(), |d| d.shadows.resolution = 16).map(|_| ()).unwrap();
 }

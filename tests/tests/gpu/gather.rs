@@ -100,7 +100,7 @@ fn geometry(gpu: &[Source], twin: &[Source]) -> Check {
 
 fn unshadowed(case: &Case, lights: &[Light], gain: f64) -> Check {
     let fixture = case.fixture(lights);
-    let twin = fixture.twin_sources(&pose(&case.model), lights, 1);
+    let twin = fixture.twin_sources(&pose(&case.model), lights, 2);
     let gpu = fixture.sources();
     geometry(&gpu, &twin)?;
     let bright: Vec<_> = luminous(&gpu).into_iter().map(|e| e.map(|x| x * gain)).collect();
@@ -119,7 +119,7 @@ fn unshadowed_light_follows_the_twin() {
 #[test]
 fn another_index_of_refraction_or_normal_is_noticed() {
     let [smooth, flat] = [&cases()[1], &cases()[3]].map(|case| case.fixture(&lights(false)).sources());
-    let twin = cases()[1].fixture(&lights(false)).twin_sources(&pose(&creature()), &lights(false), 1);
+    let twin = cases()[1].fixture(&lights(false)).twin_sources(&pose(&creature()), &lights(false), 2);
     holds(geometry(&smooth, &twin));
     notices(geometry(&flat, &twin));
     let other = cases()[0].fixture(&lights(false)).sources();
@@ -129,7 +129,7 @@ fn another_index_of_refraction_or_normal_is_noticed() {
 /// A narrow cone of the sky comes from a table over the cosine.
 fn narrow_cone(case: &Case, sky: &[Light]) -> Check {
     let fixture = case.fixture(&cone());
-    let twin = fixture.twin_sources(&pose(&case.model), sky, 1);
+    let twin = fixture.twin_sources(&pose(&case.model), sky, 2);
     // 32 intervals over the cosine, linear between; worst where η < 1 puts a step at the critical angle.
     // Measured 0.13 % (η ≥ 1) and 0.6 % (η = 0.8).
     at_most(
@@ -156,7 +156,7 @@ fn a_spot_lights_its_cone() {
     let [_, _, Light::Spot(spot), _] = lights(false) else { panic!("the third is a spot light") };
     let fixture = case.fixture(&[Light::Spot(spot)]);
     let gpu = luminous(&fixture.sources());
-    let twin = |spot| luminous(&fixture.twin_sources(&pose(&case.model), &[Light::Spot(spot)], 1));
+    let twin = |spot| luminous(&fixture.twin_sources(&pose(&case.model), &[Light::Spot(spot)], 2));
     let check = |spot| at_most("gather: spot, relative RMSE", relative_rmse(&gpu, &twin(spot)), 1e-4);
     // As for the other lights.
     holds(check(spot));
@@ -173,11 +173,11 @@ fn a_spot_lights_its_cone() {
     });
     let fixture = case.fixture(&[near]);
     let twin = luminous(&fixture.twin_sources(&pose(&case.model), &[near], 4));
-    // Shadow edges within texels of 4 mm, as above.
+    // 16 looks at four points of a texel of 4 mm against 16 rays; measured 3.9 %.
     holds(at_most(
         "gather: near spot, relative RMSE",
         relative_rmse(&luminous(&fixture.sources()), &twin),
-        0.17,
+        0.06,
     ));
 }
 
@@ -185,11 +185,11 @@ fn shadowed(case: &Case) -> Check {
     let fixture = case.fixture(&lights(true));
     let twin = luminous(&fixture.twin_sources(&pose(&case.model), &lights(true), 4));
     let gpu = luminous(&fixture.sources());
-    // Light falls on a texel's centre here and on its whole square there, with texels of 4 mm and ears of 3 mm.
-    // Measured on the creature 7–10 %, 14 % at η = 0.8 (a step at the critical angle); on the sphere 0.8 %, flat 2 %, η = 0.8 4 %.
-    at_most("gather: shadowed relative RMSE", relative_rmse(&gpu, &twin), 0.17)?;
+    // 16 looks at four points of a texel of 4 mm against 16 rays, between ears of 3 mm.
+    // Measured on the creature 5.6–6.1 %, 9.2 % at η = 0.8 (a step at the critical angle); on the sphere 0.4 %, flat 1.1 %, η = 0.8 1.5 %.
+    at_most("gather: shadowed relative RMSE", relative_rmse(&gpu, &twin), 0.12)?;
     let total = |light: &[[f64; 3]]| light.iter().flatten().sum::<f64>();
-    at_most("gather: shadowed bias", (total(&gpu) / total(&twin) - 1.0).abs(), 0.025)
+    at_most("gather: shadowed bias", (total(&gpu) / total(&twin) - 1.0).abs(), 0.01)
 }
 
 #[test]
@@ -211,9 +211,8 @@ fn blocked(case: &Case, shadow: bool) -> Check {
     let fixture = case.fixture(&from_behind(false));
     let twin = |shadow| total(&luminous(&fixture.twin_sources(&pose(&case.model), &from_behind(shadow), 4)));
     let share = (gpu(false) - gpu(shadow)) / (twin(false) - twin(true));
-    // A tenth of the light is blocked, much of it at grazing incidence, where the map's lift and the texel's centre decide;
-    // measured 5 % more than by rays with maps of 512², 10 % with 1024².
-    at_most("gather: blocked light over the twin's, from 1", (share - 1.0).abs(), 0.15)
+    // A tenth of the light is blocked, much of it at grazing incidence; measured 1.4 % more than by rays.
+    at_most("gather: blocked light over the twin's, from 1", (share - 1.0).abs(), 0.04)
 }
 
 #[test]
@@ -252,142 +251,4 @@ fn live_area_follows_joints_and_warps() {
     };
     holds(total_area(&limb(), &pose(4.0), &pose(4.0)));
     notices(total_area(&limb(), &pose(4.0), &pose(5.0)));
-}
-
-#[test]
-#[ignore = "scratch"]
-fn scratch() {
-    let size: u32 = std::env::var("SIZE").map_or(512, |s| s.parse().unwrap());
-    let mut models = vec![("creature", Model::new(translume_mesh::builtin::creature(), size))];
-    if let Some(folder) = std::env::var_os("TRANSLUME_MODELS") {
-        let mut mesh = translume_mesh::load::load(&std::path::Path::new(&folder).join("stanford-bunny.obj"))
-            .unwrap()
-            .mesh;
-        let s = 100.0 / mesh.diagonal();
-        for p in &mut mesh.positions {
-            *p = p.map(|x| x * s);
-        }
-        models.push(("bunny", Model::new(mesh, size)));
-    }
-    for (name, model) in &models {
-        let b = model.mesh.positions.iter().fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(l, h), p| {
-            (l.min(Vec3::from(*p)), h.max(Vec3::from(*p)))
-        });
-        let c = (b.0 + b.1) * 0.5;
-        let d = b.0.distance(b.1);
-        let all = [
-            (
-                "directional",
-                Light::Directional(DirectionalLight { to_light: [0.3, 0.9, -0.2], ..Default::default() }),
-            ),
-            (
-                "point",
-                Light::Point(PointLight {
-                    position: (c + Vec3::new(-0.5, 0.6, 0.7) * d).to_array(),
-                    ..Default::default()
-                }),
-            ),
-            (
-                "point near",
-                Light::Point(PointLight {
-                    position: (c + Vec3::new(-0.2, 0.4, 0.35) * d).to_array(),
-                    ..Default::default()
-                }),
-            ),
-            (
-                "spot",
-                Light::Spot(SpotLight {
-                    position: (c + Vec3::new(0.5, 0.8, 0.7) * d).to_array(),
-                    direction: [-0.5, -0.8, -0.7],
-                    ..Default::default()
-                }),
-            ),
-        ];
-        let pose = Pose::rest(model.mesh.targets.len());
-        let mut fixture = Fixture::new(model, |d| d.medium = Medium::MARBLE);
-        for (kind, light) in all {
-            let twin = luminous(&fixture.twin_sources(&pose, &[light], 4));
-            for res in [1024, 2048, 4096] {
-                fixture
-                    .body
-                    .set_shadows(translume::ShadowOptions { resolution: res, ..Default::default() })
-                    .unwrap();
-                let start = std::time::Instant::now();
-                fixture.light(&pose.frame(&[light]));
-                let gpu = luminous(&fixture.sources());
-                let ms = start.elapsed().as_millis();
-                let g: Vec<f64> = gpu.iter().map(|e| e[0]).collect();
-                let t: Vec<f64> = twin.iter().map(|e| e[0]).collect();
-                let m = translume_reference::metrics::compare(&g, &t, None).unwrap();
-                let worse = g
-                    .iter()
-                    .zip(&t)
-                    .filter(|(g, t)| (**g - **t).abs() > 0.5 * m.p99 / m.relative_p99)
-                    .count();
-                let src = fixture.sources();
-                let mask: Vec<bool> = src.iter().map(|s| s.area > 0.0).collect();
-                let m2 = translume_reference::metrics::compare(&g, &t, Some(&mask)).unwrap();
-                let full: Vec<bool> = {
-                    let a = src.iter().map(|s| s.area).fold(0.0, f64::max);
-                    src.iter().map(|s| s.area > 0.4 * a).collect()
-                };
-                let m3 = translume_reference::metrics::compare(&g, &t, Some(&full)).unwrap();
-                if let Light::Directional(l) = light {
-                    let surface = fixture.twin_surface(&pose);
-                    let dir = DVec3::from(l.to_light.map(f64::from)).normalize();
-                    let mut parts = [0.0; 6];
-                    let mut total = 0.0;
-                    let mut counts = [0; 6];
-                    for (k, texel) in model.atlas.texels.iter().enumerate() {
-                        let fc = DVec3::from(surface.face_normal(texel.triangle)).dot(dir);
-                        let sc = DVec3::from(src[k].normal).dot(dir);
-                        let e = (g[k] - t[k]).powi(2);
-                        total += e;
-                        let partial = t[k] > 0.02 && g[k] > 0.02;
-                        let class = if fc.abs() < 0.05 || fc * sc < 0.0 {
-                            0
-                        } else if fc < 0.15 {
-                            1
-                        } else if src[k].area == 0.0 {
-                            2
-                        } else if partial {
-                            3
-                        } else if t[k] <= 0.02 {
-                            4
-                        } else {
-                            5
-                        };
-                        parts[class] += e;
-                        counts[class] += (e > 0.01) as usize;
-                    }
-                    println!(
-                        "   parts: terminator {:.3} grazing {:.3} rim {:.3} both {:.3} leak {:.3} dark {:.3} counts {counts:?}",
-                        parts[0] / total,
-                        parts[1] / total,
-                        parts[2] / total,
-                        parts[3] / total,
-                        parts[4] / total,
-                        parts[5] / total
-                    );
-                }
-                println!(
-                    "   covered {:.4} {:+.4}  full {:.4} {:+.4} counts {} {} {}",
-                    m2.relative_rmse,
-                    m2.bias,
-                    m3.relative_rmse,
-                    m3.bias,
-                    g.len(),
-                    m2.count,
-                    m3.count
-                );
-                println!(
-                    "{name} {kind} {res}: rmse {:.4} rms {:.4} bias {:+.4} bad {:.4} {ms} ms",
-                    m.relative_rmse,
-                    relative_rmse(&gpu, &twin),
-                    m.bias,
-                    worse as f64 / g.len() as f64
-                );
-            }
-        }
-    }
 }

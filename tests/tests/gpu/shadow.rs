@@ -25,9 +25,9 @@ fn depth_error(radius: f64) -> f64 {
         let squared = x * x + y * y;
         if squared < (0.9 * 50.0_f64).powi(2) {
             let height = (radius * radius - squared).max(0.0).sqrt();
-            worst = worst.max((f64::from(*depth) - (51.0 - height) / 102.0).abs());
+            worst = worst.max((f64::from(*depth) - (51.0 + height) / 102.0).abs());
         } else if squared > 51.0 * 51.0 {
-            assert!(*depth == 1.0, "[{}] depth {depth} beside the sphere", gpu().adapter_name);
+            assert!(*depth == 0.0, "[{}] depth {depth} beside the sphere", gpu().adapter_name);
         }
     }
     worst
@@ -111,8 +111,8 @@ fn black_or_full(fixture: &Fixture, light: &Light) -> Check {
             at_most("shadow: light in the umbra", irradiance[0] / full, 0.0)?;
         } else if edge > margin {
             lit += 1;
-            // f32 arithmetic; measured 2.4e-7.
-            at_most("shadow: light that is missing", (irradiance[0] / full - 1.0).abs(), 1e-5)?;
+            // Four points of a texel of 2 mm see a lamp at 140 mm from other distances than its middle; measured 1.04e-4, sun 2e-8.
+            at_most("shadow: light that is missing", (irradiance[0] / full - 1.0).abs(), 2e-4)?;
         }
     }
     assert!(dark > 20 && lit > 200, "[{}] {dark} dark and {lit} lit texels", gpu().adapter_name);

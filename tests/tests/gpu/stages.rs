@@ -21,7 +21,9 @@ fn pending(fixture: &mut Fixture, frame: &Frame<'_>) -> Vec<Stage> {
 /// A stage and everything after it.
 #[track_caller]
 fn runs_from(stages: &[Stage], first: Stage) {
-    let expected: Vec<Stage> = Stage::ALL.into_iter().filter(|stage| *stage as u8 >= first as u8).collect();
+    let later = Stage::ALL.into_iter().filter(|stage| *stage as u8 >= first as u8);
+    // None of these frames has a shadowed light of the sky.
+    let expected: Vec<Stage> = later.filter(|stage| *stage != Stage::Visibility).collect();
     assert_eq!(stages, expected, "[{}]", gpu().adapter_name);
 }
 

@@ -3,7 +3,7 @@
 //! reads  positions, normals, exitance texture       writes  the host's colour and depth attachments
 //! twin   `translume_reference::composite`           WGSL    `composite.wgsl`
 
-use crate::gpu::{self, COMPARISON, DEPTH_MAPS, FLOAT_TEXTURE, READ, UNIFORM};
+use crate::gpu::{self, DEPTH_MAPS, FLOAT_TEXTURE, READ, UNIFORM};
 use crate::layout::{AtlasVertexLayout, CompositeLayout};
 use crate::{Body, Camera};
 use glam::{Mat4, Vec3};
@@ -65,7 +65,7 @@ pub struct CompositeView {
 
 impl Composite {
     pub(crate) fn new(device: &wgpu::Device, target: CompositeTarget) -> Self {
-        let types = [UNIFORM, READ, READ, FLOAT_TEXTURE, UNIFORM, DEPTH_MAPS, COMPARISON];
+        let types = [UNIFORM, READ, READ, FLOAT_TEXTURE, UNIFORM, DEPTH_MAPS];
         let layout = gpu::layout(device, "composite", ShaderStages::VERTEX_FRAGMENT, &types);
         let module = gpu::module(device, translume_shaders::COMPOSITE);
         let pipeline = |flat| pipeline(device, &layout, &module, target, flat);
@@ -143,7 +143,6 @@ fn bind(
         wgpu::BindingResource::TextureView(body.exitance_view()),
         body.buffers.gather_uniform.as_entire_binding(),
         wgpu::BindingResource::TextureView(&body.depth_maps.sampled),
-        wgpu::BindingResource::Sampler(&body.depth_maps.sampler),
     ];
     gpu::bind(device, "composite", layout, &resources)
 }

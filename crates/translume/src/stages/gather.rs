@@ -4,7 +4,7 @@
 //! twin   `translume_reference::gather`                                  WGSL    `gather.wgsl`
 
 use crate::buffers::Buffers;
-use crate::gpu::{self, COMPARISON, DEPTH_MAPS, Pass, READ, UNIFORM, WRITE};
+use crate::gpu::{self, DEPTH_MAPS, Pass, READ, UNIFORM, WRITE};
 use crate::stages::shadow::DepthMaps;
 
 pub(crate) struct Gather {
@@ -14,7 +14,7 @@ pub(crate) struct Gather {
 
 impl Gather {
     pub fn new(device: &wgpu::Device) -> Self {
-        let types = [UNIFORM, READ, READ, READ, READ, READ, WRITE, WRITE, WRITE, DEPTH_MAPS, COMPARISON];
+        let types = [UNIFORM, READ, READ, READ, READ, READ, WRITE, WRITE, WRITE, DEPTH_MAPS];
         let layout = gpu::layout(device, "gather", wgpu::ShaderStages::COMPUTE, &types);
         let module = gpu::module(device, translume_shaders::GATHER);
         Self { irradiance: gpu::compute_pipeline(device, &layout, &module, "irradiance"), layout }
@@ -40,7 +40,6 @@ impl Gather {
             buffers.texel_normals.as_entire_binding(),
             buffers.irradiance.as_entire_binding(),
             wgpu::BindingResource::TextureView(&depth_maps.sampled),
-            wgpu::BindingResource::Sampler(&depth_maps.sampler),
         ];
         gpu::bind(device, "gather", &self.layout, &resources)
     }

@@ -11,15 +11,12 @@ use glam::Mat4;
 pub(crate) struct Shadow {
     layout: wgpu::BindGroupLayout,
     pipeline: wgpu::RenderPipeline,
-    /// Compares with the four nearest texels and blends the answers.
-    sampler: wgpu::Sampler,
 }
 
 /// Depth maps, and the uniforms they are drawn with.
 pub(crate) struct DepthMaps {
     pub texture: wgpu::Texture,
     pub sampled: wgpu::TextureView,
-    pub sampler: wgpu::Sampler,
     layers: Vec<wgpu::TextureView>,
     uniforms: wgpu::Buffer,
     group: wgpu::BindGroup,
@@ -73,14 +70,7 @@ impl Shadow {
             multiview_mask: None,
             cache: None,
         });
-        let sampler = device.create_sampler(&wgpu::SamplerDescriptor {
-            label: Some("depth maps"),
-            mag_filter: wgpu::FilterMode::Linear,
-            min_filter: wgpu::FilterMode::Linear,
-            compare: Some(wgpu::CompareFunction::GreaterEqual),
-            ..Default::default()
-        });
-        Self { layout, pipeline, sampler }
+        Self { layout, pipeline }
     }
 
     /// Room for `layers` square layers and the uniforms of `views`.
@@ -109,7 +99,7 @@ impl Shadow {
         let layers = (0..layers).map(|layer| view(wgpu::TextureViewDimension::D2, layer, 1)).collect();
         let uniforms = gpu::uniform_buffer(device, "shadow views", UNIFORM_STRIDE * views);
         let group = gpu::bind(device, "shadow", &self.layout, &[gpu::uniform_slot::<Mat4>(&uniforms)]);
-        DepthMaps { texture, sampled, sampler: self.sampler.clone(), layers, uniforms, group }
+        DepthMaps { texture, sampled, layers, uniforms, group }
     }
 
     /// Draws the views, whose uniforms begin at slot `first`: a pass for each layer, a draw for each view.

@@ -7,7 +7,7 @@
 
 use crate::ShadowOptions;
 use crate::buffers::Buffers;
-use crate::gpu::{self, COMPARISON, DEPTH_MAPS, Pass, READ, UNIFORM, UNIFORM_ARRAY, WRITE};
+use crate::gpu::{self, DEPTH_MAPS, Pass, READ, UNIFORM, UNIFORM_ARRAY, WRITE};
 use crate::layout::DirectionsLayout;
 use crate::lighting::view_layout;
 use crate::shadow_view::{Subject, Tile, View, sky_view};
@@ -134,7 +134,7 @@ impl SkyMemory {
 
 impl Visibility {
     pub fn new(device: &wgpu::Device) -> Self {
-        let types = [UNIFORM, READ, READ, READ, READ, WRITE, DEPTH_MAPS, COMPARISON, UNIFORM_ARRAY];
+        let types = [UNIFORM, READ, READ, READ, READ, WRITE, DEPTH_MAPS, UNIFORM_ARRAY];
         let layout = gpu::layout(device, "visibility", wgpu::ShaderStages::COMPUTE, &types);
         let module = gpu::module(device, translume_shaders::VISIBILITY);
         Self { pipeline: gpu::compute_pipeline(device, &layout, &module, "visibility"), layout }
@@ -156,7 +156,6 @@ impl Visibility {
             buffers.normals.as_entire_binding(),
             visible.as_entire_binding(),
             wgpu::BindingResource::TextureView(&maps.sampled),
-            wgpu::BindingResource::Sampler(&maps.sampler),
             gpu::uniform_slot::<DirectionsLayout>(uniforms),
         ];
         gpu::bind(device, "visibility", &self.layout, &resources)
