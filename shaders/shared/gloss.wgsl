@@ -62,6 +62,9 @@ fn gloss(roughness: f32, position: vec3f, normal: vec3f, face: vec3f, to_eye: ve
     }
     let mirrored = reflect(-to_eye, normal);
     let reflected = 1.0 - fresnel_transmittance(lighting.eta, abs(dot(normal, to_eye)));
+    // Nine harmonics hold no mirror image: the sky is seen as blurred as a matt surface would see it.
+    let blurred = environment_irradiance(lighting.open_sky, mirrored) + environment_irradiance(lighting.shadowed_sky, mirrored);
+    sum += blurred * (0.31830988 * reflected);
     for (var k = 0u; k < lighting.ambient_count; k++) {
         let inside = dot(mirrored, lighting.ambients[k].axis) >= lighting.ambients[k].cone_cosine;
         sum += select(vec3f(0.0), lighting.ambients[k].radiance * reflected, inside);

@@ -68,6 +68,7 @@ pub const COMPOSITE: Shader = shader!(
     "shared/fresnel.wgsl",
     "shared/lights.wgsl",
     "shared/area_light.wgsl",
+    "shared/environment.wgsl",
     "shared/shadow_map.wgsl",
     "shared/gloss.wgsl",
     "shared/exitance.wgsl",

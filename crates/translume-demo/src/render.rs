@@ -68,7 +68,11 @@ pub fn run(arguments: &Render) -> Result<(), Error> {
         method,
         mm_per_unit: setup.mm_per_unit,
         flat_normals: setup.flat_normals,
-        shadows: ShadowOptions { resolution: arguments.shadow, ..Default::default() },
+        shadows: ShadowOptions {
+            resolution: arguments.shadow,
+            directions: arguments.directions,
+            ..Default::default()
+        },
         ..BodyDescriptor::new(mesh, &atlas)
     };
     let samples = arguments.samples.unwrap_or(match output.format {
