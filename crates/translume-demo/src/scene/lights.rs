@@ -4,7 +4,9 @@ use crate::environment::Environment;
 use crate::error::Error;
 use serde::Deserialize;
 use std::path::Path;
-use translume::{AmbientLight, DirectionalLight, Light, PointLight, RectangleLight, Region, SphereLight, SpotLight};
+use translume::{
+    AmbientLight, DirectionalLight, Light, PointLight, RectangleLight, Region, SphereLight, SpotLight,
+};
 
 fn lit() -> bool {
     true
