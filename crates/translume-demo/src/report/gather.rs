@@ -10,12 +10,14 @@ use crate::cli::Report;
 use crate::error::Error;
 use crate::gpu::Gpu;
 use crate::progress;
+use crate::render::check_atlas;
 use indicatif::ProgressBar;
 use translume::Translume;
 
 pub fn run(arguments: &Report) -> Result<(), Error> {
     prepare_folder(&arguments.output)?;
     let gpu = Gpu::new()?;
+    check_atlas(arguments.atlas, &gpu)?;
     let translume = Translume::new(&gpu.device)?;
     let every = arguments.every.unwrap_or(if arguments.quick { 16 } else { 4 });
     let (warm_up, timed) = if arguments.quick { (1, 1) } else { (2, 5) };
@@ -52,8 +54,12 @@ impl Study<'_> {
     fn run(mut self, quick: bool) -> Result<(), Error> {
         let trials = trials::trials(self.subject, &self.twin, quick)?;
         self.bar.set_length(trials.iter().map(|trial| 1 + trial.settings.len() as u64).sum());
+        let mut reference = None;
         for trial in &trials {
-            self.try_all(trial)?;
+            self.bar.set_message(trial.name);
+            reference = self.reference(&trial.truth, reference);
+            self.bar.inc(1);
+            self.try_all(trial, reference.as_ref())?;
         }
         if !self.subject.model.mesh.targets.is_empty() {
             self.bar.set_message("flicker");
@@ -63,10 +69,7 @@ impl Study<'_> {
         Ok(())
     }
 
-    fn try_all(&mut self, trial: &Trial) -> Result<(), Error> {
-        self.bar.set_message(trial.name);
-        let reference = self.reference(&trial.truth);
-        self.bar.inc(1);
+    fn try_all(&mut self, trial: &Trial, reference: Option<&Reference>) -> Result<(), Error> {
         for setting in &trial.settings {
             self.bench.set_shadows(setting.options)?;
             let dark = trial.lights.is_empty();
@@ -76,7 +79,7 @@ impl Study<'_> {
                 scene: self.subject.name.clone(),
                 light: trial.name.to_owned(),
                 shadow: setting.shadow.clone(),
-                figures: reference.as_ref().and_then(|reference| reference.compare(&found)),
+                figures: reference.and_then(|reference| reference.compare(&found)),
                 time_ms: time,
                 sweeps: setting.sweeps,
             });
@@ -85,9 +88,10 @@ impl Study<'_> {
         Ok(())
     }
 
-    fn reference(&self, truth: &Truth) -> Option<Reference> {
+    fn reference(&self, truth: &Truth, before: Option<Reference>) -> Option<Reference> {
         match truth {
             Truth::None => None,
+            Truth::Same => before,
             Truth::Rays { lights, samples, rays } => Some(self.twin.cast(lights, *samples, *rays)),
             Truth::Quadrature(map) => Some(self.twin.integrate(map)),
         }
