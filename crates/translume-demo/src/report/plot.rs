@@ -12,6 +12,10 @@ const SWEEPS: [(Sweep, &str); 3] = [
     (Sweep::Samples, "points or directions"),
 ];
 
+/// Four that a colour-blind eye tells apart. Source: Okabe and Ito, "Color Universal Design".
+const COLOURS: [RGBColor; 4] =
+    [RGBColor(0, 114, 178), RGBColor(213, 94, 0), RGBColor(0, 158, 115), RGBColor(204, 121, 167)];
+
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 /// One light with ever finer settings: ms and relative error.
 type Line<'a> = (&'a str, Vec<(f64, f64)>);
@@ -66,20 +70,40 @@ fn draw(
             range(points().map(|point| point.0)).log_scale(),
             range(points().map(|point| point.1)).log_scale(),
         )?;
-    chart.configure_mesh().x_desc("ms").y_desc("RMS error / mean irradiance").draw()?;
+    chart
+        .configure_mesh()
+        .max_light_lines(0)
+        .x_desc("ms")
+        .y_desc("RMS error / mean irradiance, %")
+        .x_label_formatter(&|ms| format!("{}", rounded(*ms)))
+        .y_label_formatter(&|error| format!("{}", rounded(100.0 * error)))
+        .draw()?;
     for (k, (light, points)) in lines.iter().enumerate() {
-        let colour = Palette99::pick(k).filled();
+        let colour = COLOURS[k % COLOURS.len()].filled();
         let series = LineSeries::new(points.iter().copied(), colour.stroke_width(2)).point_size(3);
         chart
             .draw_series(series)?
             .label(*light)
             .legend(move |(x, y)| PathElement::new([(x, y), (x + 16, y)], colour.stroke_width(2)));
     }
-    chart.configure_series_labels().background_style(WHITE.mix(0.8)).border_style(BLACK).draw()
+    // Error falls as time grows.
+    let corner = SeriesLabelPosition::LowerLeft;
+    chart
+        .configure_series_labels()
+        .position(corner)
+        .background_style(WHITE.mix(0.8))
+        .border_style(BLACK)
+        .draw()
 }
 
 /// Around all values, with some room.
 fn range(values: impl Iterator<Item = f64>) -> std::ops::Range<f64> {
     let (low, high) = values.fold((f64::INFINITY, 0.0_f64), |(low, high), x| (low.min(x), high.max(x)));
     if low > high { 0.1..10.0 } else { 0.7 * low..1.4 * high }
+}
+
+/// To three digits.
+fn rounded(value: f64) -> f64 {
+    let unit = 10.0_f64.powf(value.abs().max(1e-9).log10().floor() - 2.0);
+    ((value / unit).round() * unit * 1e6).round() / 1e6
 }
