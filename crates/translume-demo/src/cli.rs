@@ -15,6 +15,7 @@ Examples:
   translume render --scene scene.json -o scene.exr                     linear radiance, full float
   translume inspect bunny.obj --json
   translume inspect creature teapot bunny.obj --table                  a line for each
+  translume report --suite gather -o report                            error beside time of every kind of light
 
 MODEL is an OBJ, glTF or GLB file, or a built-in: sphere, torus-knot, teapot, creature.
 RUST_LOG=info shows what wgpu has to say; WGPU_ADAPTER_NAME picks an adapter.";
@@ -37,6 +38,9 @@ pub enum Command {
     /// Tell what a model holds and how it unwraps.
     #[command(after_help = EXAMPLES)]
     Inspect(Inspect),
+    /// Measure speed and error against the CPU reference; writes tables and a plot.
+    #[command(after_help = EXAMPLES)]
+    Report(Report),
 }
 
 /// `translume render`.
@@ -159,6 +163,30 @@ pub struct Inspect {
     /// How the surface is laid out.
     #[command(flatten)]
     pub layout: Layout,
+}
+
+/// `translume report`.
+#[derive(Debug, Args)]
+pub struct Report {
+    /// What to measure: gather (irradiance in every kind of light); a wrong name lists them all.
+    #[arg(long, value_name = "NAME")]
+    pub suite: String,
+    /// OBJ, glTF or GLB files, or the names of built-in models, separated by commas. By default the creature, and
+    /// stanford-bunny.obj where the folder that TRANSLUME_MODELS names has it.
+    #[arg(long, value_name = "MODEL,…", value_delimiter = ',')]
+    pub models: Vec<String>,
+    /// Width of the atlas in texels.
+    #[arg(long, value_name = "N", default_value_t = 512)]
+    pub atlas: u32,
+    /// The reference looks at every Nth texel. By default 4, quickly 16.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=65536))]
+    pub every: Option<u32>,
+    /// Fewer settings, fewer repetitions.
+    #[arg(long)]
+    pub quick: bool,
+    /// Folder to write gather.csv, gather.md and gather.svg to; it is made where there is none.
+    #[arg(short, long, value_name = "DIR")]
+    pub output: PathBuf,
 }
 
 /// How the surface is laid out in the atlas.

@@ -1,4 +1,4 @@
-//! `translume`: render and inspect translucent models.
+//! `translume`: render, inspect and measure translucent models.
 
 mod cli;
 mod environment;
@@ -11,6 +11,7 @@ mod motion;
 mod picture;
 mod progress;
 mod render;
+mod report;
 mod scene;
 mod studio;
 
@@ -22,6 +23,7 @@ fn main() -> ExitCode {
     let result = match cli::Arguments::parse().command {
         cli::Command::Render(arguments) => render::run(&arguments),
         cli::Command::Inspect(arguments) => inspect::run(&arguments),
+        cli::Command::Report(arguments) => report::run(&arguments),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

@@ -128,7 +128,7 @@ fn method(arguments: &Render) -> Result<Method, Error> {
 }
 
 /// Fails before the unwrapping rather than after.
-fn check_atlas(size: u32, gpu: &Gpu) -> Result<(), Error> {
+pub fn check_atlas(size: u32, gpu: &Gpu) -> Result<(), Error> {
     let limit = translume::largest_atlas(&gpu.device.limits());
     if size <= limit {
         return Ok(());

@@ -8,6 +8,7 @@
 
 mod desk;
 mod environment;
+mod report;
 
 use desk::{Desk, check_refusal, read_exr, refused, render, translume};
 use std::path::Path;

@@ -1,0 +1,168 @@
+//! The same subject in the same light, by rays.
+
+use super::IOR;
+use super::subject::Subject;
+use glam::DVec3;
+use std::sync::Arc;
+use translume::Light;
+use translume_mesh::Atlas;
+use translume_reference::gather::{Gather, Source};
+use translume_reference::{EnvironmentMap, Surface, deform, metrics};
+
+/// A subject on the CPU, thinned to every so manieth texel.
+pub struct Twin {
+    atlas: Atlas,
+    rest: Vec<[f64; 3]>,
+    surface: Surface,
+    mm_per_unit: f64,
+    every: usize,
+}
+
+/// What should be at every so manieth texel.
+pub struct Reference {
+    every: usize,
+    irradiance: Vec<[f64; 3]>,
+}
+
+/// How far from it something is, all channels together.
+#[derive(Clone, Copy)]
+pub struct Figures {
+    /// RMS of the difference over the mean of the reference.
+    pub relative_rmse: f64,
+    /// RMS of the difference over the RMS of the reference.
+    pub rmse_over_rms: f64,
+    /// Mean of the difference over the mean of the reference.
+    pub bias: f64,
+}
+
+/// Quadrature over all pixels of a map is slow: as many texels are enough.
+const QUADRATURES: usize = 1024;
+
+impl Twin {
+    pub fn new(subject: &Subject, every: usize) -> Self {
+        let mesh = &subject.model.mesh;
+        let mm_per_unit = f64::from(subject.mm_per_unit);
+        let weights: Vec<f64> = subject.pose.weights.iter().copied().map(f64::from).collect();
+        let joints: Vec<_> =
+            subject.pose.joints.iter().map(|joint| joint.map(|column| column.map(f64::from))).collect();
+        let pose = deform::Pose { weights: &weights, joints: &joints, ..Default::default() };
+        let positions = deform::posed(mesh, &pose, mm_per_unit);
+        // A mesh that nothing deforms keeps the normals of its file.
+        let rigid = mesh.targets.is_empty() && mesh.skin.is_none();
+        let own = || mesh.normals.iter().map(|n| DVec3::from(n.map(f64::from)).normalize().to_array());
+        let normals = if rigid { own().collect() } else { deform::normals(mesh, &positions) };
+        let mut atlas = subject.atlas.clone();
+        atlas.texels = atlas.texels.into_iter().step_by(every).collect();
+        Self {
+            atlas,
+            rest: deform::positions(mesh, &[], mm_per_unit),
+            surface: Surface::new(positions, normals, mesh.triangles.clone(), false),
+            mm_per_unit,
+            every,
+        }
+    }
+
+    /// Irradiance by rays, from `samples`² points of each texel, with `rays`² rays to each light that has an extent.
+    pub fn cast(&self, lights: &[translume_reference::Light], samples: u32, rays: u32) -> Reference {
+        let sources = self.sources(lights, samples, rays);
+        Reference { every: self.every, irradiance: sources.iter().map(|source| source.irradiance).collect() }
+    }
+
+    /// Irradiance from all of a map's sky above the horizon, the sum over its pixels.
+    pub fn integrate(&self, map: &EnvironmentMap) -> Reference {
+        let stride = self.atlas.texels.len().div_ceil(QUADRATURES);
+        let sources = self.sources(&[], 1, 1).into_iter().step_by(stride);
+        let irradiance = sources.map(|source| map.irradiance(IOR.into(), source.normal)).collect();
+        Reference { every: self.every * stride, irradiance }
+    }
+
+    /// A light in millimetres; `None` for a kind that rays do not know, such as harmonics. Intensity is per steradian, so its
+    /// irradiance over distance² takes the square of the scale.
+    pub fn light(&self, light: &Light) -> Option<translume_reference::Light> {
+        use translume_reference::Light as Twin;
+        let double = |v: [f32; 3]| v.map(f64::from);
+        let mm = |p: [f32; 3]| p.map(|x| f64::from(x) * self.mm_per_unit);
+        let unit = |v: [f32; 3]| DVec3::from(double(v)).normalize().to_array();
+        let intensity = |rgb: [f32; 3]| rgb.map(|c| f64::from(c) * self.mm_per_unit * self.mm_per_unit);
+        Some(match light {
+            Light::Directional(light) => Twin::Directional {
+                to_light: unit(light.to_light),
+                irradiance: double(light.irradiance),
+                shadow: light.shadow,
+                region: None,
+            },
+            Light::Point(light) => Twin::Point {
+                position: mm(light.position),
+                intensity: intensity(light.intensity),
+                shadow: light.shadow,
+                region: None,
+            },
+            Light::Spot(light) => Twin::Spot {
+                position: mm(light.position),
+                direction: double(light.direction),
+                intensity: intensity(light.intensity),
+                inner_angle: light.inner_angle.into(),
+                outer_angle: light.outer_angle.into(),
+                shadow: light.shadow,
+                region: None,
+            },
+            Light::Rectangle(light) => Twin::Rectangle {
+                center: mm(light.center),
+                half_right: mm(light.half_right),
+                half_up: mm(light.half_up),
+                radiance: double(light.radiance),
+                shadow: light.shadow,
+            },
+            Light::Sphere(light) => Twin::Sphere {
+                center: mm(light.center),
+                radius: f64::from(light.radius) * self.mm_per_unit,
+                radiance: double(light.radiance),
+                shadow: light.shadow,
+            },
+            Light::Ambient(light) => Twin::Ambient {
+                radiance: double(light.radiance),
+                axis: unit(light.axis),
+                half_angle: light.half_angle.into(),
+                shadow: light.shadow,
+            },
+            _ => return None,
+        })
+    }
+
+    fn sources(&self, lights: &[translume_reference::Light], samples: u32, rays: u32) -> Vec<Source> {
+        let gather = Gather {
+            atlas: &self.atlas,
+            rest: &self.rest,
+            mm_per_unit: self.mm_per_unit,
+            surface: &self.surface,
+            lights,
+            ior: IOR.into(),
+            samples,
+            rays,
+        };
+        gather.run()
+    }
+}
+
+impl Reference {
+    /// `None` where there is nothing to compare.
+    pub fn compare(&self, irradiance: &[[f64; 3]]) -> Option<Figures> {
+        let found: Vec<f64> = irradiance.iter().step_by(self.every).flatten().copied().collect();
+        let wanted = self.irradiance.as_flattened();
+        let metrics = metrics::compare(&found, wanted, None)?;
+        let count = wanted.len() as f64;
+        let mean = wanted.iter().sum::<f64>() / count;
+        let rms = (wanted.iter().map(|e| e * e).sum::<f64>() / count).sqrt();
+        Some(Figures {
+            relative_rmse: metrics.relative_rmse,
+            rmse_over_rms: metrics.relative_rmse * mean / rms,
+            bias: metrics.bias,
+        })
+    }
+}
+
+/// The library's map in double precision.
+pub fn map(map: &translume::EnvironmentMap) -> Option<Arc<EnvironmentMap>> {
+    let pixels = map.pixels().iter().map(|rgb| rgb.map(f64::from)).collect();
+    EnvironmentMap::new(map.width() as usize, map.height() as usize, pixels).map(Arc::new)
+}
