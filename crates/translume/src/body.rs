@@ -193,7 +193,7 @@ impl Body {
             self.pending.insert(StageSet::from_stage_on(Stage::Deform));
         }
         if shaded {
-            self.sky.forget();
+            self.sky.forget(has_sky);
         }
         let renews_sky = has_sky && self.prepare_sky(device, queue, &subject);
         self.pending.set(Stage::Visibility, renews_sky);

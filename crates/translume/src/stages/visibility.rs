@@ -32,7 +32,7 @@ pub(crate) struct SkyMemory {
     pub directions: Vec<Vec3>,
     /// Allocated when a light first needs it.
     memory: Option<Memory>,
-    /// Whether some word has never been filled.
+    /// Whether words may show nothing, or the body of long ago.
     blank: bool,
     /// Words that do not show the body as it is.
     stale: usize,
@@ -70,9 +70,10 @@ impl SkyMemory {
         Self { directions, memory: None, blank: true, stale, cursor: 0, views: Vec::new() }
     }
 
-    /// The body has moved.
-    pub fn forget(&mut self) {
+    /// The body has moved, while nobody `watches` the sky perhaps: then all of it is renewed when somebody does.
+    pub fn forget(&mut self, watched: bool) {
         self.stale = self.directions.len() / PER_WORD;
+        self.blank |= !watched;
     }
 
     /// The buffer that the gather reads, if there is one.
@@ -103,7 +104,7 @@ impl SkyMemory {
         let uniforms = gpu::uniform_buffer(device, "directions", STRIDE * views / PER_WORD as u64);
         let group = visibility.bind(device, buffers, &visible, &maps, &uniforms);
         self.memory = Some(Memory { visible, maps, uniforms, group });
-        self.forget();
+        self.forget(false);
         true
     }
 
