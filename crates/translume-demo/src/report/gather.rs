@@ -12,6 +12,7 @@ use crate::gpu::Gpu;
 use crate::progress;
 use crate::render::check_atlas;
 use indicatif::ProgressBar;
+use std::time::Instant;
 use translume::Translume;
 
 pub fn run(arguments: &Report) -> Result<(), Error> {
@@ -57,9 +58,13 @@ impl Study<'_> {
         let mut reference = None;
         for trial in &trials {
             self.bar.set_message(trial.name);
+            let start = Instant::now();
             reference = self.reference(&trial.truth, reference);
+            let cast = start.elapsed().as_secs_f32();
             self.bar.inc(1);
             self.try_all(trial, reference.as_ref())?;
+            let all = start.elapsed().as_secs_f32();
+            log::info!("{}: reference {cast:.1} s, measurements {:.1} s", trial.name, all - cast);
         }
         if !self.subject.model.mesh.targets.is_empty() {
             self.bar.set_message("flicker");

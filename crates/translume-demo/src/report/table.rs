@@ -98,7 +98,7 @@ fn legend(header: &Header<'_>) -> String {
         "\
 The truth is irradiance inside the surface (index of refraction {ior}) at one texel in {every}, by rays in double precision: a texel's is the mean
 over 4 × 4 points of it in the light of lamps and of a sky with a sun, over 2 × 2 points elsewhere; from each point 16 × 16 rays (8 × 8 for 16 mixed
-lights) look at each light that has an extent. That of the sky that is not occluded is the sum over all pixels of a map of 512 × 256.
+lights) look at each light that has an extent, there from 2048 texels at most. That of the sky that is not occluded is the sum over all pixels of a map of 512 × 256.
 
 - **error / mean**: RMS of the difference over the mean of the truth, all three channels together, texels in the dark and at the rim included.
 - **error / RMS**: the same over the RMS of the truth.
