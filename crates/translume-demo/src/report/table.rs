@@ -104,7 +104,8 @@ lights) look at each light that has an extent, there from 2048 texels at most. T
 - **error / RMS**: the same over the RMS of the truth.
 - **bias**: mean of the difference over the mean of the truth; negative is too dark.
 - **ms**: what the light costs a frame in which every depth map and all that is known of the sky is made anew: from submission until the device is
-  idle, less the same of a frame without light just before; the median of {timed}. For `no light` it is that frame itself: the gather alone.
+  idle, less the same of a frame without light just before; the median of {timed}, of fewer where two seconds
+  have gone by. For `no light` it is that frame itself: the gather alone.
 - **map, filter, points, directions**: width of a depth map, comparisons along each side of a texel, points of an area light, directions of the sky.
 - **flicker**: the first morph target goes from 0.30 to 0.33 in steps of 0.0025. The error is that of the worst frame against the mean of the
   frames before and after it, the curvature of the motion itself included; the bias is the same of the light on the whole body, Σ E·A. The time is the
