@@ -4,11 +4,14 @@ use super::IOR;
 use super::subject::Subject;
 use crate::error::Error;
 use crate::gpu::Gpu;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 use translume::{
     Body, BodyDescriptor, Casters, Deformation, Frame, Light, Lighting, Medium, Region, ShadowOptions, Stage,
     Translume, readback, wgpu,
 };
+
+/// After so long no repetition begins: what is slow needs few.
+const PATIENCE: Duration = Duration::from_secs(2);
 
 pub struct Bench<'a> {
     gpu: &'a Gpu,
@@ -49,25 +52,34 @@ impl<'a> Bench<'a> {
 
     /// What the lights cost, ms. They are on in the last frame.
     pub fn cost(&mut self, lights: &[Light]) -> Result<f64, Error> {
-        for _ in 0..self.repeats.warm_up {
-            self.frame(self.deformation, lights)?;
-        }
-        let mut costs = Vec::new();
-        for _ in 0..self.repeats.timed {
-            let dark = self.frame(self.deformation, &[])?;
-            costs.push(self.frame(self.deformation, lights)? - dark);
-        }
-        Ok(median(costs))
+        self.median_of(lights, |bench| {
+            let dark = bench.frame(bench.deformation, &[])?;
+            Ok(bench.frame(bench.deformation, lights)? - dark)
+        })
     }
 
     /// What a frame costs that has no light, ms.
     pub fn dark_cost(&mut self) -> Result<f64, Error> {
-        for _ in 0..self.repeats.warm_up {
-            self.frame(self.deformation, &[])?;
+        self.median_of(&[], |bench| bench.frame(bench.deformation, &[]))
+    }
+
+    fn median_of(
+        &mut self,
+        warm: &[Light],
+        mut time: impl FnMut(&mut Self) -> Result<f64, Error>,
+    ) -> Result<f64, Error> {
+        let (start, mut times) = (Instant::now(), Vec::new());
+        for k in 0..self.repeats.warm_up {
+            if k == 0 || start.elapsed() < PATIENCE {
+                self.frame(self.deformation, warm)?;
+            }
         }
-        let costs: Result<_, _> =
-            (0..self.repeats.timed).map(|_| self.frame(self.deformation, &[])).collect();
-        Ok(median(costs?))
+        for k in 0..self.repeats.timed {
+            if k == 0 || start.elapsed() < PATIENCE {
+                times.push(time(self)?);
+            }
+        }
+        Ok(median(times))
     }
 
     /// One frame of which nothing but the pose is known already, through the gather; from submission to its end, ms.

@@ -14,7 +14,7 @@ const FIRST: f32 = 0.30;
 const STEP: f32 = 0.0025;
 const STEPS: i32 = 12;
 /// Frames before the first, in which whatever is renewed bit by bit gets into its stride.
-const LEAD: i32 = 8;
+const LEAD: i32 = 4;
 
 /// A row for each light and setting.
 pub fn rows(bench: &mut Bench<'_>, subject: &Subject, quick: bool) -> Result<Vec<Row>, Error> {

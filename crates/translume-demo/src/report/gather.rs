@@ -12,6 +12,8 @@ use crate::gpu::Gpu;
 use crate::progress;
 use crate::render::check_atlas;
 use indicatif::ProgressBar;
+use std::path::Path;
+use std::time::Instant;
 use translume::Translume;
 
 pub fn run(arguments: &Report) -> Result<(), Error> {
@@ -21,6 +23,7 @@ pub fn run(arguments: &Report) -> Result<(), Error> {
     let translume = Translume::new(&gpu.device)?;
     let every = arguments.every.unwrap_or(if arguments.quick { 32 } else { 8 });
     let (warm_up, timed) = if arguments.quick { (1, 1) } else { (2, 5) };
+    let header = Header { adapter: &gpu.adapter, atlas: arguments.atlas, every, timed };
     let mut rows = Vec::new();
     for name in subject::names(arguments) {
         let subject = Subject::open(&name, arguments.atlas)?;
@@ -28,17 +31,20 @@ pub fn run(arguments: &Report) -> Result<(), Error> {
         let twin = Twin::new(&subject, every as usize);
         let bar = progress::bar(&subject.name);
         Study { subject: &subject, bench, twin, rows: &mut rows, bar }.run(arguments.quick)?;
+        write_all(&arguments.output, &rows, &header)?;
     }
-    let header = Header { adapter: &gpu.adapter, atlas: arguments.atlas, every, timed };
-    write(&arguments.output, "gather.csv", &table::csv(&rows, &header))?;
-    write(&arguments.output, "gather.md", &table::markdown(&rows, &header))?;
-    let drawn = plot::svg(&rows).map_err(|problem| Error::Output {
-        path: arguments.output.join("gather.svg"),
-        problem: format!("cannot be drawn: {problem}"),
-    })?;
-    write(&arguments.output, "gather.svg", &drawn)?;
     progress::tell(&format!("{}: {} rows, on {}", arguments.output.display(), rows.len(), gpu.adapter));
     Ok(())
+}
+
+fn write_all(folder: &Path, rows: &[Row], header: &Header<'_>) -> Result<(), Error> {
+    write(folder, "gather.csv", &table::csv(rows, header))?;
+    write(folder, "gather.md", &table::markdown(rows, header))?;
+    let drawn = plot::svg(rows).map_err(|problem| Error::Output {
+        path: folder.join("gather.svg"),
+        problem: format!("cannot be drawn: {problem}"),
+    })?;
+    write(folder, "gather.svg", &drawn)
 }
 
 /// One subject on its way through all trials.
@@ -57,9 +63,13 @@ impl Study<'_> {
         let mut reference = None;
         for trial in &trials {
             self.bar.set_message(trial.name);
+            let start = Instant::now();
             reference = self.reference(&trial.truth, reference);
+            let cast = start.elapsed().as_secs_f32();
             self.bar.inc(1);
             self.try_all(trial, reference.as_ref())?;
+            let all = start.elapsed().as_secs_f32();
+            log::info!("{}: reference {cast:.1} s, measurements {:.1} s", trial.name, all - cast);
         }
         if !self.subject.model.mesh.targets.is_empty() {
             self.bar.set_message("flicker");

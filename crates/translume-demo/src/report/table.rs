@@ -98,13 +98,14 @@ fn legend(header: &Header<'_>) -> String {
         "\
 The truth is irradiance inside the surface (index of refraction {ior}) at one texel in {every}, by rays in double precision: a texel's is the mean
 over 4 × 4 points of it in the light of lamps and of a sky with a sun, over 2 × 2 points elsewhere; from each point 16 × 16 rays (8 × 8 for 16 mixed
-lights) look at each light that has an extent. That of the sky that is not occluded is the sum over all pixels of a map of 512 × 256.
+lights) look at each light that has an extent, there from 2048 texels at most. That of the sky that is not occluded is the sum over all pixels of a map of 512 × 256.
 
 - **error / mean**: RMS of the difference over the mean of the truth, all three channels together, texels in the dark and at the rim included.
 - **error / RMS**: the same over the RMS of the truth.
 - **bias**: mean of the difference over the mean of the truth; negative is too dark.
 - **ms**: what the light costs a frame in which every depth map and all that is known of the sky is made anew: from submission until the device is
-  idle, less the same of a frame without light just before; the median of {timed}. For `no light` it is that frame itself: the gather alone.
+  idle, less the same of a frame without light just before; the median of {timed}, of fewer where two seconds
+  have gone by. For `no light` it is that frame itself: the gather alone.
 - **map, filter, points, directions**: width of a depth map, comparisons along each side of a texel, points of an area light, directions of the sky.
 - **flicker**: the first morph target goes from 0.30 to 0.33 in steps of 0.0025. The error is that of the worst frame against the mean of the
   frames before and after it, the curvature of the motion itself included; the bias is the same of the light on the whole body, Σ E·A. The time is the
