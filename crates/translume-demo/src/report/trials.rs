@@ -60,10 +60,10 @@ pub fn trials(subject: &Subject, twin: &Twin, quick: bool) -> Result<Vec<Trial>,
     let window = Light::Rectangle(scenes::window(subject));
     let bulb = Light::Sphere(scenes::bulb(subject));
     for (name, light) in [("rectangle", window), ("sphere", bulb)] {
-        all.push(trial(name, vec![light], rays(twin, &[light], 2, 12), point_settings(quick)));
+        all.push(trial(name, vec![light], rays(twin, &[light], 2, 8), point_settings(quick)));
     }
     let constant = Light::Ambient(scenes::constant_sky(true));
-    all.push(trial("constant sky", vec![constant], rays(twin, &[constant], 2, 12), sky_settings(quick)));
+    all.push(trial("constant sky", vec![constant], rays(twin, &[constant], 2, 8), sky_settings(quick)));
     all.extend(smooth_skies(quick)?);
     all.extend(suns()?);
     all.extend(costs(subject, twin));
@@ -82,7 +82,7 @@ fn rays(twin: &Twin, lights: &[Light], samples: u32, rays: u32) -> Truth {
 fn smooth_skies(quick: bool) -> Result<[Trial; 2], Error> {
     let sky = scenes::sky_map(256, 128, |_| None)?;
     let light = |shadow| vec![Light::Environment(EnvironmentLight { shadow, ..sky.project() })];
-    let truth = sky_truth(&sky, [2, 12]);
+    let truth = sky_truth(&sky, [2, 8]);
     let open = twin::map(&scenes::sky_map(512, 256, |_| None)?).map_or(Truth::None, Truth::Quadrature);
     Ok([
         trial("smooth sky", light(true), truth, sky_settings(quick)),
@@ -104,7 +104,7 @@ fn suns() -> Result<[Trial; 2], Error> {
     let split_setting = Setting { shadow: words(&both), options: both, sweeps: &[] };
     let setting = Setting { shadow: sky_words(&options), options, sweeps: &[] };
     // The sun's shadow has edges, so more points in each texel; fewer rays to the smooth rest then do.
-    let truth = sky_truth(&map, [4, 8]);
+    let truth = sky_truth(&map, [3, 6]);
     Ok([
         trial("sun in sky, harmonics alone", whole, truth, vec![setting]),
         trial("sun in sky, split", split, Truth::Same, vec![split_setting]),
