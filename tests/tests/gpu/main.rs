@@ -3,6 +3,7 @@
 
 #![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used, reason = "a failure here is a failed test")]
 
+mod area_light;
 mod closure;
 mod cluster;
 mod composite;
@@ -12,7 +13,9 @@ mod furnace;
 mod gather;
 mod golden;
 mod hard_cases;
+mod irradiance;
 mod layout;
 mod scatter;
 mod shadow;
+mod sky;
 mod stages;
