@@ -4,9 +4,10 @@ use glam::{DVec3, Vec3};
 use std::f64::consts::PI;
 use std::sync::Arc;
 use translume::{DirectionalLight, Light, Medium, PointLight, RectangleLight, SphereLight};
+use translume_reference::gather::Source;
 use translume_tests::{
     Check, Fixture, Model, Pose, at_least, at_most, creature, gpu, holds, luminous, notices, relative_rmse,
-    sphere,
+    rmse_by_area, sphere,
 };
 
 fn rest(model: &Model) -> Pose {
@@ -107,8 +108,7 @@ fn a_sphere_is_dark_inside() {
         let beside = lit_with(&sphere(), 1.3, 16, &[bulb([0.0, 80.0, 0.0], 60.0, shadow)]);
         let sources = beside.sources();
         // Four points of a texel lie up to its width from its middle.
-        let inside = |s: &&_| {
-            let s: &translume_reference::gather::Source = s;
+        let inside = |s: &&Source| {
             DVec3::from(s.position).distance(DVec3::Y * 80.0) < 60.0 - 2.0 * s.area.sqrt()
         };
         let within: Vec<_> = sources.iter().filter(inside).map(|s| s.irradiance).collect();
@@ -208,8 +208,8 @@ fn the_unit_of_length_does_not_matter() {
     }
 }
 
-fn shadowed(light: Light, twin: &[[f64; 3]], area_points: u32) -> f64 {
-    relative_rmse(&lit_with(&creature(), 1.3, area_points, &[light]).irradiance(), twin)
+fn shadowed(light: Light, twin: &[Source], area_points: u32) -> f64 {
+    rmse_by_area(&lit_with(&creature(), 1.3, area_points, &[light]).irradiance(), twin)
 }
 
 #[test]
@@ -217,7 +217,6 @@ fn shadows_follow_traced_rays() {
     for ((name, light), (_, open)) in lights(true).into_iter().zip(lights(false)) {
         let twin = lit_with(&creature(), 1.3, 16, &[open])
             .twin_sources_lit(&rest(&creature()), &[translume_tests::light(&light, 1.0)], [2, 8]);
-        let twin = luminous(&twin);
         let check = |light, points| {
             let error = shadowed(light, &twin, points);
             at_most(&format!("area light: shadow of the {name}, {points} points, relative RMSE"), error, 0.1)

@@ -1,0 +1,313 @@
+//! Opaque things that the host draws into the depth maps.
+
+use glam::DVec3;
+use std::num::NonZeroU64;
+use translume::{
+    AmbientLight, Casters, DirectionalLight, Frame, Light, Lighting, Medium, PointLight, RectangleLight, Region,
+    ShadowView, Work, wgpu,
+};
+use translume_reference::Surface;
+use translume_reference::gather::{Gather, Source};
+use translume_tests::{
+    Check, Fixture, Pose, at_least, at_most, gpu, holds, luminous, notices, plane, relative_rmse,
+};
+
+/// Half the side of the square that casts shadows, and its height over the plane, mm.
+const HALF: f32 = 20.0;
+const HEIGHT: f32 = 30.0;
+const STRIDE: u32 = 256;
+
+const QUAD: &str = "
+@group(0) @binding(0) var<uniform> view_projection: mat4x4f;
+
+@vertex
+fn vertex(@builtin(vertex_index) k: u32) -> @builtin(position) vec4f {
+    let x = select(-20.0, 20.0, k == 1u || k == 4u || k == 5u);
+    let z = select(-20.0, 20.0, k == 2u || k == 3u || k == 5u);
+    return view_projection * vec4f(x, 30.0, z, 1.0);
+}
+";
+
+/// The host's pipeline for its square.
+struct Host {
+    layout: wgpu::BindGroupLayout,
+    pipeline: wgpu::RenderPipeline,
+}
+
+impl Host {
+    fn new() -> Self {
+        let device = &gpu().device;
+        let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("host"),
+            entries: &[wgpu::BindGroupLayoutEntry {
+                binding: 0,
+                visibility: wgpu::ShaderStages::VERTEX,
+                ty: wgpu::BindingType::Buffer {
+                    ty: wgpu::BufferBindingType::Uniform,
+                    has_dynamic_offset: true,
+                    min_binding_size: NonZeroU64::new(64),
+                },
+                count: None,
+            }],
+        });
+        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: Some("host"),
+            source: wgpu::ShaderSource::Wgsl(QUAD.into()),
+        });
+        let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: Some("host"),
+            bind_group_layouts: &[Some(&layout)],
+            immediate_size: 0,
+        });
+        let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label: Some("host"),
+            layout: Some(&pipeline_layout),
+            vertex: wgpu::VertexState {
+                module: &module,
+                entry_point: Some("vertex"),
+                compilation_options: wgpu::PipelineCompilationOptions::default(),
+                buffers: &[],
+            },
+            primitive: wgpu::PrimitiveState::default(),
+            depth_stencil: Some(wgpu::DepthStencilState {
+                format: wgpu::TextureFormat::Depth32Float,
+                depth_write_enabled: Some(true),
+                depth_compare: Some(wgpu::CompareFunction::Greater),
+                stencil: wgpu::StencilState::default(),
+                bias: wgpu::DepthBiasState::default(),
+            }),
+            multisample: wgpu::MultisampleState::default(),
+            fragment: None,
+            multiview_mask: None,
+            cache: None,
+        });
+        Self { layout, pipeline }
+    }
+
+    /// One frame with the square in every map. Returns the numbers of the views in the order they were drawn.
+    fn run(&self, fixture: &mut Fixture, frame: &Frame<'_>) -> (Work, Vec<usize>) {
+        fixture.prepare(frame).unwrap();
+        let views: Vec<ShadowView> = fixture.body.shadow_views().collect();
+        let (device, queue) = (&gpu().device, &gpu().queue);
+        let uniforms = device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("host"),
+            size: u64::from(STRIDE) * views.len().max(1) as u64,
+            usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        for view in &views {
+            let offset = u64::from(STRIDE) * view.index as u64;
+            queue.write_buffer(&uniforms, offset, bytemuck::bytes_of(&view.view_projection));
+        }
+        let binding = wgpu::BufferBinding { buffer: &uniforms, offset: 0, size: NonZeroU64::new(64) };
+        let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("host"),
+            layout: &self.layout,
+            entries: &[wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::Buffer(binding) }],
+        });
+        let mut drawn = Vec::new();
+        let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        let work = fixture.body.encode_with(&mut encoder, |pass, view| {
+            drawn.push(view);
+            pass.set_pipeline(&self.pipeline);
+            pass.set_bind_group(0, &group, &[STRIDE * view as u32]);
+            pass.draw(0..6, 0..1);
+        });
+        queue.submit([encoder.finish()]);
+        (work, drawn)
+    }
+}
+
+fn floor() -> Fixture {
+    Fixture::new(&plane(100.0, 32), |d| {
+        d.medium = Medium { ior: 1.0, ..Medium::MARBLE };
+        d.shadows.resolution = 512;
+    })
+}
+
+/// Where the square is, in units of `mm_per_unit` 1.
+fn square(revision: u64) -> Casters {
+    let bounds = Region { low: [-HALF, HEIGHT, -HALF], high: [HALF, HEIGHT, HALF] };
+    Casters { bounds, revision }
+}
+
+fn frame(lights: &[Light], casters: Option<Casters>) -> Frame<'_> {
+    Frame { lighting: Lighting::Lights(lights), casters, ..Frame::default() }
+}
+
+fn sun() -> Light {
+    Light::Directional(DirectionalLight {
+        to_light: [0.2, 1.0, 0.1],
+        irradiance: [3.0, 2.0, 1.0],
+        ..Default::default()
+    })
+}
+
+fn lamp(height: f32) -> Light {
+    Light::Point(PointLight { position: [5.0, height, 4.0], intensity: [9e3, 5e3, 2e3], ..Default::default() })
+}
+
+fn window() -> Light {
+    Light::Rectangle(RectangleLight {
+        center: [0.0, 120.0, 0.0],
+        half_right: [15.0, 0.0, 0.0],
+        half_up: [0.0, 0.0, 15.0],
+        radiance: [3.0, 2.0, 1.0],
+        shadow: true,
+    })
+}
+
+fn sky() -> Light {
+    Light::Ambient(AmbientLight { shadow: true, ..Default::default() })
+}
+
+/// The floor under the square, by rays.
+fn twin(fixture: &Fixture, light: &Light) -> Vec<Source> {
+    let pose = Pose::rest(0);
+    let body = fixture.twin_surface(&pose);
+    let (mut positions, mut normals) = (body.positions.clone(), fixture.twin_normals(&pose, &body.positions));
+    let mut triangles = body.triangles.clone();
+    let first = positions.len() as u32;
+    let [h, y] = [HALF, HEIGHT].map(f64::from);
+    positions.extend([[-h, y, -h], [h, y, -h], [-h, y, h], [h, y, h]]);
+    normals.extend([[0.0, 1.0, 0.0]; 4]);
+    triangles.extend([[first, first + 1, first + 2], [first + 2, first + 1, first + 3]]);
+    let gather = Gather {
+        atlas: &fixture.model.atlas,
+        rest: &positions.clone(),
+        mm_per_unit: 1.0,
+        surface: &Surface::new(positions, normals, triangles, false),
+        lights: &[translume_tests::light(light, 1.0)],
+        ior: 1.0,
+        samples: 4,
+        rays: 8,
+    };
+    gather.run()
+}
+
+fn against_rays(host: &Host, name: &str, light: Light, casters: Option<Casters>) -> Check {
+    let mut fixture = floor();
+    let lights = [light];
+    host.run(&mut fixture, &frame(&lights, casters));
+    let twin = luminous(&twin(&fixture, &light));
+    let error = relative_rmse(&fixture.irradiance(), &twin);
+    // As for shadows of the body itself: 16 looks at the map against 16 rays, 64 directions of the sky.
+    at_most(&format!("casters: {name}, relative RMSE"), error, 0.05)
+}
+
+#[test]
+fn shadows_of_the_host_follow_traced_rays() {
+    let host = Host::new();
+    for (name, light) in
+        [("sun", sun()), ("lamp", lamp(150.0)), ("near lamp", lamp(60.0)), ("window", window()), ("sky", sky())]
+    {
+        holds(against_rays(&host, name, light, Some(square(0))));
+        // Six maps around a near lamp begin at the lamp and hold the square in any case.
+        if name != "near lamp" {
+            notices(against_rays(&host, &format!("{name} without bounds"), light, None));
+        }
+    }
+}
+
+/// Black below, full beside, everywhere further than a texel from the edge.
+fn black_or_full(fixture: &Fixture) -> Check {
+    let to_light = DVec3::new(0.2, 1.0, 0.1).normalize();
+    let (mut dark, mut lit) = (0, 0);
+    for Source { position, area, irradiance, .. } in fixture.sources() {
+        let through = DVec3::from(position) + to_light * (f64::from(HEIGHT) / to_light.y);
+        let edge = through.x.abs().max(through.z.abs()) - f64::from(HALF);
+        let margin = 1.5 * area.sqrt();
+        if edge < -margin {
+            dark += 1;
+            at_most("casters: light below", irradiance[0], 0.0)?;
+        } else if edge > margin {
+            lit += 1;
+            // Roundings.
+            at_most("casters: light missing beside", (irradiance[0] / (3.0 * to_light.y) - 1.0).abs(), 1e-5)?;
+        }
+    }
+    assert!(dark > 50 && lit > 300, "[{}] {dark} dark and {lit} lit texels", gpu().adapter_name);
+    Ok(())
+}
+
+#[test]
+fn it_is_black_below_and_full_beside() {
+    let host = Host::new();
+    let (mut fixture, lights) = (floor(), [sun()]);
+    host.run(&mut fixture, &frame(&lights, Some(square(0))));
+    holds(black_or_full(&fixture));
+    // What lies before the near plane is clipped; the same revision in other bounds is a change.
+    host.run(&mut fixture, &frame(&lights, None));
+    notices(black_or_full(&fixture));
+    host.run(&mut fixture, &frame(&lights, Some(square(0))));
+    holds(black_or_full(&fixture));
+    // A frame that lets the host draw nothing shows no shadow of it.
+    fixture.run(&frame(&lights, Some(square(1))));
+    notices(black_or_full(&fixture));
+}
+
+#[test]
+fn every_view_is_drawn_once() {
+    let host = Host::new();
+    let mut fixture = floor();
+    let lights = [window(), sky(), sun(), lamp(60.0)];
+    let lit = |revision| frame(&lights, Some(square(revision)));
+    fixture.prepare(&lit(0)).unwrap();
+    let views: Vec<ShadowView> = fixture.body.shadow_views().collect();
+    let count = |light| views.iter().filter(|view| view.light == light).count();
+    // The window lies off the plane by more than its size, so that one map for each of its points will do; the lamp does not.
+    assert_eq!([None, Some(0), Some(1), Some(2), Some(3)].map(count), [64, 16, 0, 1, 6]);
+    assert!(views.iter().enumerate().all(|(k, view)| view.index == k), "numbers count from 0");
+    let (work, mut drawn) = host.run(&mut fixture, &lit(0));
+    assert_eq!(work.draws as usize, views.len());
+    drawn.sort_unstable();
+    assert_eq!(drawn, (0..views.len()).collect::<Vec<_>>(), "[{}]", gpu().adapter_name);
+
+    let (work, drawn) = host.run(&mut fixture, &lit(0));
+    assert_eq!((work, drawn), (Work::default(), Vec::new()), "nothing has changed");
+    assert_eq!(fixture.body.shadow_views().count(), 0);
+    let (again, _) = host.run(&mut fixture, &lit(1));
+    assert_eq!(again.draws as usize, views.len(), "another revision");
+    let moved = [window(), sky(), sun(), lamp(61.0)];
+    let (relit, drawn) = host.run(&mut fixture, &frame(&moved, Some(square(1))));
+    assert_eq!((relit.draws, drawn.len()), (16 + 1 + 6, 16 + 1 + 6), "the sky is still known");
+}
+
+#[test]
+fn bad_bounds_are_refused_by_name() {
+    let mut fixture = floor();
+    let lights = [sun()];
+    fixture.run(&frame(&lights, Some(square(0))));
+    for (low, high) in [
+        ([0.0, 1.0, 0.0], [1.0, 0.5, 1.0]),
+        ([0.0, f32::NAN, 0.0], [1.0; 3]),
+        ([0.0; 3], [1.0, f32::INFINITY, 1.0]),
+    ] {
+        let bad = Casters { bounds: Region { low, high }, revision: 0 };
+        let message = fixture.prepare(&frame(&lights, Some(bad))).unwrap_err().to_string();
+        assert!(message.contains("casters lie between"), "[{}] {message}", gpu().adapter_name);
+    }
+    let before = fixture.irradiance();
+    let (work, _) = Host::new().run(&mut fixture, &frame(&lights, Some(square(0))));
+    assert_eq!((work, before), (Work::default(), fixture.irradiance()), "the body kept its last frame");
+}
+
+/// The square is given in world units, and so are the views.
+#[test]
+fn the_unit_of_length_does_not_matter() {
+    let host = Host::new();
+    let lights = [sun()];
+    let shade = |mm_per_unit: f32, casters: Casters| {
+        let mut fixture = Fixture::new(&plane(100.0, 32), |d| d.mm_per_unit = mm_per_unit);
+        host.run(&mut fixture, &frame(&lights, Some(casters)));
+        fixture.irradiance()
+    };
+    let usual = shade(1.0, square(0));
+    // Looks into the map at an edge that roundings push across.
+    let check = |other: &[[f64; 3]]| at_most("casters: in metres", relative_rmse(other, &usual), 1e-3);
+    holds(check(&shade(1000.0, square(0))));
+    let low = Casters { bounds: Region { low: [0.0; 3], high: [1.0; 3] }, revision: 0 };
+    notices(check(&shade(1000.0, low)));
+    let dark = usual.iter().filter(|e| e[0] == 0.0).count();
+    holds(at_least("casters: dark texels", dark as f64, 50.0));
+}
