@@ -20,3 +20,4 @@ mod scatter;
 mod shadow;
 mod sky;
 mod stages;
+mod work;
