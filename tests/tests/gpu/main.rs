@@ -14,6 +14,7 @@ mod furnace;
 mod gather;
 mod golden;
 mod hard_cases;
+mod hard_light;
 mod irradiance;
 mod layout;
 mod scatter;
