@@ -76,7 +76,8 @@ pub fn relative_rmse(measured: &[[f64; 3]], reference: &[[f64; 3]]) -> f64 {
 pub fn rmse_by_area(measured: &[[f64; 3]], reference: &[Source]) -> f64 {
     assert_eq!(measured.len(), reference.len(), "[{}] lengths differ", gpu().adapter_name);
     let weighted = |value: &[f64; 3], source: &Source| value.map(|x| x * source.area.sqrt());
-    let measured: Vec<_> = measured.iter().zip(reference).map(|(value, source)| weighted(value, source)).collect();
+    let measured: Vec<_> =
+        measured.iter().zip(reference).map(|(value, source)| weighted(value, source)).collect();
     let reference: Vec<_> = reference.iter().map(|source| weighted(&source.irradiance, source)).collect();
     relative_rmse(&measured, &reference)
 }

@@ -86,7 +86,11 @@ fn unshadowed_light_follows_the_twin() {
 
 /// Each texel's share of light that it must not have.
 fn dark(values: &[[f64; 3]]) -> Check {
-    at_most("area light: light where there is none", values.iter().flatten().copied().fold(0.0, f64::max), 0.0)
+    at_most(
+        "area light: light where there is none",
+        values.iter().flatten().copied().fold(0.0, f64::max),
+        0.0,
+    )
 }
 
 #[test]
@@ -108,9 +112,8 @@ fn a_sphere_is_dark_inside() {
         let beside = lit_with(&sphere(), 1.3, 16, &[bulb([0.0, 80.0, 0.0], 60.0, shadow)]);
         let sources = beside.sources();
         // Four points of a texel lie up to its width from its middle.
-        let inside = |s: &&Source| {
-            DVec3::from(s.position).distance(DVec3::Y * 80.0) < 60.0 - 2.0 * s.area.sqrt()
-        };
+        let inside =
+            |s: &&Source| DVec3::from(s.position).distance(DVec3::Y * 80.0) < 60.0 - 2.0 * s.area.sqrt();
         let within: Vec<_> = sources.iter().filter(inside).map(|s| s.irradiance).collect();
         assert!(within.len() > 20, "[{}] {} texels are inside", gpu().adapter_name, within.len());
         holds(dark(&within));
@@ -174,7 +177,8 @@ fn lights_at_and_in_the_body_stay_bounded() {
         for height in [50.0 + 1e-3, 50.0, 49.9, 0.0] {
             let window = facing([0.0, height, 0.0], [0.0, -100.0, 0.0], 30.0, shadow);
             let across = facing([0.0, height, 0.0], [100.0, height, 0.0], 30.0, shadow);
-            let lights = [Light::Rectangle(window), Light::Rectangle(across), bulb([0.0, height, 0.0], 5.0, shadow)];
+            let lights =
+                [Light::Rectangle(window), Light::Rectangle(across), bulb([0.0, height, 0.0], 5.0, shadow)];
             for light in lights {
                 holds(bounded(&format!("area light at {height}"), &lit(&sphere(), ior, &[light]), 3.0));
             }
@@ -215,8 +219,11 @@ fn shadowed(light: Light, twin: &[Source], area_points: u32) -> f64 {
 #[test]
 fn shadows_follow_traced_rays() {
     for ((name, light), (_, open)) in lights(true).into_iter().zip(lights(false)) {
-        let twin = lit_with(&creature(), 1.3, 16, &[open])
-            .twin_sources_lit(&rest(&creature()), &[translume_tests::light(&light, 1.0)], [2, 8]);
+        let twin = lit_with(&creature(), 1.3, 16, &[open]).twin_sources_lit(
+            &rest(&creature()),
+            &[translume_tests::light(&light, 1.0)],
+            [2, 8],
+        );
         let check = |light, points| {
             let error = shadowed(light, &twin, points);
             at_most(&format!("area light: shadow of the {name}, {points} points, relative RMSE"), error, 0.1)

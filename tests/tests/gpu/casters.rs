@@ -3,8 +3,8 @@
 use glam::DVec3;
 use std::num::NonZeroU64;
 use translume::{
-    AmbientLight, Casters, DirectionalLight, Frame, Light, Lighting, Medium, PointLight, RectangleLight, Region,
-    ShadowView, Work, wgpu,
+    AmbientLight, Casters, DirectionalLight, Frame, Light, Lighting, Medium, PointLight, RectangleLight,
+    Region, ShadowView, Work, wgpu,
 };
 use translume_reference::Surface;
 use translume_reference::gather::{Gather, Source};
@@ -144,7 +144,11 @@ fn sun() -> Light {
 }
 
 fn lamp(height: f32) -> Light {
-    Light::Point(PointLight { position: [5.0, height, 4.0], intensity: [9e3, 5e3, 2e3], ..Default::default() })
+    Light::Point(PointLight {
+        position: [5.0, height, 4.0],
+        intensity: [9e3, 5e3, 2e3],
+        ..Default::default()
+    })
 }
 
 /// So near to the floor's edge that it looks all around.
@@ -203,9 +207,13 @@ fn against_rays(host: &Host, name: &str, light: Light, casters: Option<Casters>)
 #[test]
 fn shadows_of_the_host_follow_traced_rays() {
     let host = Host::new();
-    for (name, light) in
-        [("sun", sun()), ("lamp", lamp(150.0)), ("near lamp", near_lamp()), ("window", window()), ("sky", sky())]
-    {
+    for (name, light) in [
+        ("sun", sun()),
+        ("lamp", lamp(150.0)),
+        ("near lamp", near_lamp()),
+        ("window", window()),
+        ("sky", sky()),
+    ] {
         holds(against_rays(&host, name, light, Some(square(0))));
         // Six maps around a near lamp begin at the lamp and hold the square in any case.
         if name != "near lamp" {

@@ -58,7 +58,11 @@ fn bounded(what: &str, values: &[[f64; 3]], most: f64) -> Check {
     let wrong = values.iter().flatten().filter(|x| !(0.0..=1e30).contains(*x)).count();
     at_most(&format!("{what}: values that are negative or not finite"), wrong as f64, 0.0)?;
     // Closed forms and tables in single precision.
-    at_most(&format!("{what}: most"), values.iter().flatten().copied().fold(0.0, f64::max), most * (1.0 + 1e-4))
+    at_most(
+        &format!("{what}: most"),
+        values.iter().flatten().copied().fold(0.0, f64::max),
+        most * (1.0 + 1e-4),
+    )
 }
 
 #[test]
@@ -109,7 +113,13 @@ fn lamps_at_and_in_the_body() {
     for position in [[0.0; 3], [1.0, 2.0, 3.0], [0.0, 50.0, 0.0], [0.0, 49.9, 0.0], [20.0, 44.0, 14.0]] {
         for shadow in [false, true] {
             let lamp = PointLight { position, intensity: [1.0; 3], shadow, region: None };
-            let spot = SpotLight { position, direction: [0.1, -1.0, 0.0], outer_angle: 1.5, shadow, ..Default::default() };
+            let spot = SpotLight {
+                position,
+                direction: [0.1, -1.0, 0.0],
+                outer_angle: 1.5,
+                shadow,
+                ..Default::default()
+            };
             for ior in [0.7, 1.0, 1.3] {
                 for light in [Light::Point(lamp), Light::Spot(spot)] {
                     let values = lit(&model, ior, &Pose::rest(0), &[light]);
@@ -129,7 +139,9 @@ fn between_sheets(gap: f32) -> Check {
         ([-50.0, 0.0, -50.0], [50.0, 10.0, 50.0]),
         ([-50.0, 10.0 + gap, -50.0], [50.0, 20.0 + gap, 50.0]),
     ]);
-    let sun = |shadow| Light::Directional(DirectionalLight { to_light: [0.2, 1.0, 0.3], shadow, ..Default::default() });
+    let sun = |shadow| {
+        Light::Directional(DirectionalLight { to_light: [0.2, 1.0, 0.3], shadow, ..Default::default() })
+    };
     let sky = |shadow| Light::Ambient(AmbientLight { shadow, ..Default::default() });
     for (name, light) in [("sun", [sun(false), sun(true)]), ("sky", [sky(false), sky(true)])] {
         let mut fixture = Fixture::new(&model, |d| d.medium = Medium { ior: 1.0, ..Medium::MARBLE });
@@ -202,10 +214,14 @@ fn bodies_without_area_stay_bounded() {
             let values = lit(&model, 1.3, pose, &[light]);
             holds(bounded(&format!("hard light: {name} on crushed body {k}"), &values, most));
         }
+        // Right at the point that gathers all of it: as bright as one likes, on no area.
+        let within = lit(&model, 1.3, pose, &[Light::Point(PointLight::default())]);
+        holds(bounded(&format!("hard light: lamp in crushed body {k}"), &within, 1e30));
         let everything: Vec<Light> = kinds().into_iter().map(|(_, light, _)| light).collect();
         let mut fixture = Fixture::new(&model, |d| d.shadows.resolution = 128);
         fixture.run(&pose.frame(&everything));
-        holds(bounded(&format!("hard light: exitance of crushed body {k}"), &fixture.exitance(), 1e3));
+        // All together bring up to 15; two sheets in one plane light each other. Measured 25.
+        holds(bounded(&format!("hard light: exitance of crushed body {k}"), &fixture.exitance(), 30.0));
         fixture.run(&Pose::rest(2).frame(&everything));
         let mut fresh = Fixture::new(&model, |d| d.shadows.resolution = 128);
         fresh.run(&Pose::rest(2).frame(&everything));

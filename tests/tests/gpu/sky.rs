@@ -156,7 +156,8 @@ fn open_and_shadowed_lights_of_the_sky_add_up() {
         Light::Ambient(AmbientLight { radiance: [0.3, 0.2, 0.9], axis, half_angle: 0.8, shadow })
     };
     let open = [environment(&map, false), cone(false)];
-    let check = |lights: &[Light], joint: &[Light]| at_most("sky: sum of lights", adds_up(lights, joint), 1e-5);
+    let check =
+        |lights: &[Light], joint: &[Light]| at_most("sky: sum of lights", adds_up(lights, joint), 1e-5);
     let one_shadowed = [open[0], ambient(true), open[1]];
     holds(check(&one_shadowed, &one_shadowed));
     notices(check(&one_shadowed, &[open[0], ambient(false), open[1]]));
@@ -186,9 +187,10 @@ fn narrow_cones_stay_bounded() {
             Light::Ambient(AmbientLight { axis: [0.2, 0.5, -0.7], half_angle, shadow, ..Default::default() })
         };
         let [open, shadowed] = [false, true].map(|shadow| lit(&creature(), 64, &[cone(shadow)]));
-        let excess = open.iter().zip(&shadowed).map(|(open, shadowed)| {
-            if shadowed[0] >= 0.0 { shadowed[0] - open[0] } else { f64::NAN }
-        });
+        let excess = open
+            .iter()
+            .zip(&shadowed)
+            .map(|(open, shadowed)| if shadowed[0] >= 0.0 { shadowed[0] - open[0] } else { f64::NAN });
         let worst = excess.reduce(|a, b| if a >= b { a } else { b }).unwrap();
         // The visible share is rounded.
         holds(at_most(&format!("sky: cone of {half_angle}, more than open"), worst, 1e-6));
@@ -216,25 +218,25 @@ fn over_mean(measured: &[[f64; 3]], reference: &[Source]) -> f64 {
     (squares * area).sqrt() / mean
 }
 
-/// A disc of 1°, 10⁴ times as bright as the sky around it.
+/// A disc of 1° around a direction near the zenith, 10⁴ times as bright as the sky.
 #[test]
 fn a_sun_has_to_be_split_off() {
-    let to_sun = DVec3::new(0.4, 0.7, 0.6).normalize();
+    let to_sun = DVec3::new(0.1, 1.0, 0.1).normalize();
     let (map, twin) = maps([512, 256], |d| {
-        let sky = 0.6 + 0.4 * d.y;
-        if d.dot(to_sun) > 0.5_f64.to_radians().cos() { [1e4, 9e3, 8e3] } else { [0.7 * sky, 0.8 * sky, sky] }
+        if d.dot(to_sun) > 1_f64.to_radians().cos() { [1e4, 0.9e4, 0.7e4] } else { [0.7, 0.8, 1.0] }
     });
     let twin = twin_of(translume_reference::Light::Environment { map: twin, shadow: true }, [2, 12]);
     let (peaks, rest) = map.split_peaks();
     assert_eq!(peaks.len(), 1);
-    let mut split: Vec<Light> = peaks.into_iter().map(Light::Directional).collect();
-    split.push(Light::Environment(rest));
-    let check = |what: &str, lights: &[Light]| {
-        let error = over_mean(&lit(&creature(), 64, lights), &twin);
-        at_most(&format!("sky: sun, {what}, RMSE over mean"), error, 0.05)
-    };
-    holds(check("split off", &split));
-    notices(check("harmonics alone", &[environment(&map, true)]));
-    let harmonics = over_mean(&lit(&creature(), 64, &[environment(&map, true)]), &twin);
-    holds(at_least("sky: sun, harmonics alone, RMSE over mean", harmonics, 0.2));
+    let split = [Light::Directional(peaks[0]), Light::Environment(rest)];
+    let error = |lights: &[Light]| over_mean(&lit(&creature(), 64, lights), &twin);
+    let check = |error| at_most("sky: sun split off, RMSE over mean", error, 0.05);
+    // Measured 3.2 %.
+    holds(check(error(&split)));
+    // Most of it is the sun's shadow, which 64 directions with smooth radiance blur. Measured 24 %, without any shadow 37 %. It takes a sun
+    // whose shadow is seen: from the front measured 13 %, and half as wide 5 %.
+    let alone = error(&[environment(&map, true)]);
+    notices(check(alone));
+    holds(at_least("sky: sun in harmonics alone, RMSE over mean", alone, 0.2));
+    notices(check(error(&[split[1]])));
 }

@@ -118,7 +118,8 @@ fn sixteen_lights_add_up() {
     assert_eq!(lights.len(), 16);
     holds(adds_up(&lights));
     for without in [0, 3, 7, 13, 14] {
-        let rest: Vec<_> = lights.iter().enumerate().filter(|(k, _)| *k != without).map(|(_, l)| *l).collect();
+        let rest: Vec<_> =
+            lights.iter().enumerate().filter(|(k, _)| *k != without).map(|(_, l)| *l).collect();
         notices(adds_up(&rest));
     }
 }
