@@ -3,7 +3,7 @@
 use glam::{DVec3, Vec3};
 use std::f64::consts::PI;
 use std::sync::Arc;
-use translume::{DirectionalLight, Light, Medium, PointLight, RectangleLight, SphereLight};
+use translume::{DirectionalLight, Light, Medium, PointLight, RectangleLight, ShadowOptions, SphereLight};
 use translume_reference::gather::Source;
 use translume_tests::{
     Check, Fixture, Model, Pose, at_least, at_most, creature, gpu, holds, luminous, notices, relative_rmse,
@@ -14,18 +14,20 @@ fn rest(model: &Model) -> Pose {
     Pose::rest(model.mesh.targets.len())
 }
 
-fn lit_with(model: &Arc<Model>, ior: f32, area_points: u32, lights: &[Light]) -> Fixture {
-    let mut fixture = Fixture::new(model, |d| {
+fn body(model: &Arc<Model>, ior: f32) -> Fixture {
+    Fixture::new(model, |d| {
         d.medium = Medium { ior, ..Medium::MARBLE };
-        d.shadows.area_points = area_points;
         d.shadows.resolution = 1024;
-    });
-    fixture.light(&rest(model).frame(lights));
-    fixture
+    })
 }
 
-fn lit(model: &Arc<Model>, ior: f32, lights: &[Light]) -> Vec<[f64; 3]> {
-    lit_with(model, ior, 16, lights).irradiance()
+fn lit(body: &mut Fixture, lights: &[Light]) -> Vec<[f64; 3]> {
+    let pose = rest(&body.model);
+    body.light(&pose.frame(lights));
+    let irradiance = body.irradiance();
+    // Comparisons of maxima pass over what is no number.
+    assert!(irradiance.iter().flatten().all(|e| e.is_finite()), "[{}] {lights:?}", gpu().adapter_name);
+    irradiance
 }
 
 /// A square that shines from `center` towards `target`.
@@ -56,74 +58,72 @@ fn lights(shadow: bool) -> [(&'static str, Light); 4] {
     ]
 }
 
-fn follows(model: &Arc<Model>, ior: f32, (name, light): (&str, Light), twin: Light) -> Check {
-    let fixture = lit_with(model, ior, 16, &[light]);
-    let twin = luminous(&fixture.twin_sources(&rest(model), &[twin], 2));
-    // The same closed form in single precision at η = 1. Fresnel's share comes from 16 points: where the horizon cuts a light, one by one.
-    let bound = if ior == 1.0 { 1e-3 } else { 0.02 };
-    at_most(
-        &format!("area light: {name} on {}, η {ior}, relative RMSE", model.mesh.name),
-        relative_rmse(&fixture.irradiance(), &twin),
-        bound,
-    )
+fn follows(body: &mut Fixture, (name, light): (&str, Light), twin: Light) -> Check {
+    let gpu = lit(body, &[light]);
+    let twin = luminous(&body.twin_sources(&rest(&body.model), &[twin], 2));
+    let ior = body.body.medium().ior;
+    // The same closed form at η = 1, but that a sliver of light of which no point is above the horizon is left out: measured 2.2e-4.
+    // Fresnel's share comes from 16 points, and the horizon cuts a light one by one: measured 1.8 % where it does so everywhere.
+    let bound = if ior == 1.0 { 1e-3 } else { 0.025 };
+    let what = format!("area light: {name} on {}, η {ior}, relative RMSE", body.model.mesh.name);
+    at_most(&what, relative_rmse(&gpu, &twin), bound)
 }
 
 #[test]
 fn unshadowed_light_follows_the_twin() {
     for model in [creature(), sphere()] {
         for ior in [1.0, 1.3] {
+            let mut body = body(&model, ior);
             for light in lights(false) {
-                holds(follows(&model, ior, light, light.1));
+                holds(follows(&mut body, light, light.1));
             }
         }
     }
     let larger = bulb([-70.0, 90.0, 80.0], 15.3, false);
-    notices(follows(&sphere(), 1.3, lights(false)[2], larger));
+    notices(follows(&mut body(&sphere(), 1.3), lights(false)[2], larger));
     let Light::Rectangle(mut wall) = lights(false)[1].1 else { panic!("the wall is a rectangle") };
     wall.center[2] += 0.5;
-    notices(follows(&sphere(), 1.0, lights(false)[1], Light::Rectangle(wall)));
+    notices(follows(&mut body(&sphere(), 1.0), lights(false)[1], Light::Rectangle(wall)));
 }
 
 /// Each texel's share of light that it must not have.
 fn dark(values: &[[f64; 3]]) -> Check {
-    at_most(
-        "area light: light where there is none",
-        values.iter().flatten().copied().fold(0.0, f64::max),
-        0.0,
-    )
+    at_most("area light: light where there is none", values.iter().flatten().sum(), 0.0)
 }
 
 #[test]
 fn a_rectangle_is_dark_from_behind() {
+    let mut body = body(&creature(), 1.3);
     for shadow in [false, true] {
         let front = facing([0.0, 48.0, 150.0], [0.0, 48.0, 0.0], 40.0, shadow);
         let back = RectangleLight { half_right: front.half_right.map(|x| -x), ..front };
-        holds(dark(&lit(&creature(), 1.3, &[Light::Rectangle(back)])));
-        notices(dark(&lit(&creature(), 1.3, &[Light::Rectangle(front)])));
+        holds(dark(&lit(&mut body, &[Light::Rectangle(back)])));
+        notices(dark(&lit(&mut body, &[Light::Rectangle(front)])));
     }
 }
 
 #[test]
 fn a_sphere_is_dark_inside() {
+    let mut body = body(&sphere(), 1.3);
     for shadow in [false, true] {
-        let around = |radius| lit(&sphere(), 1.3, &[bulb([0.0; 3], radius, shadow)]);
-        holds(dark(&around(60.0)));
+        holds(dark(&lit(&mut body, &[bulb([0.0; 3], 60.0, shadow)])));
         // The part of the body that sticks out of it still sees none of it: its horizon is in the way.
-        let beside = lit_with(&sphere(), 1.3, 16, &[bulb([0.0, 80.0, 0.0], 60.0, shadow)]);
-        let sources = beside.sources();
+        let beside = lit(&mut body, &[bulb([0.0, 80.0, 0.0], 60.0, shadow)]);
+        let sources = body.sources();
         // Four points of a texel lie up to its width from its middle.
         let inside =
             |s: &&Source| DVec3::from(s.position).distance(DVec3::Y * 80.0) < 60.0 - 2.0 * s.area.sqrt();
         let within: Vec<_> = sources.iter().filter(inside).map(|s| s.irradiance).collect();
         assert!(within.len() > 20, "[{}] {} texels are inside", gpu().adapter_name, within.len());
         holds(dark(&within));
-        notices(dark(&beside.irradiance()));
+        notices(dark(&beside));
     }
 }
 
 /// From far away a light of some size is as good as parallel light or a point.
 fn alike(what: &str, area: Light, plain: Light, bound: f64) -> Check {
-    let [area, plain] = [area, plain].map(|light| lit(&sphere(), 1.3, &[light]));
+    let mut body = body(&sphere(), 1.3);
+    let [area, plain] = [area, plain].map(|light| lit(&mut body, &[light]));
     at_most(what, relative_rmse(&area, &plain), bound)
 }
 
@@ -174,18 +174,23 @@ fn bounded(what: &str, values: &[[f64; 3]], radiance: f64) -> Check {
 #[test]
 fn lights_at_and_in_the_body_stay_bounded() {
     for (ior, shadow) in [(1.0, false), (1.0, true), (1.3, true)] {
+        let mut body = body(&sphere(), ior);
         for height in [50.0 + 1e-3, 50.0, 49.9, 0.0] {
             let window = facing([0.0, height, 0.0], [0.0, -100.0, 0.0], 30.0, shadow);
             let across = facing([0.0, height, 0.0], [100.0, height, 0.0], 30.0, shadow);
             let lights =
                 [Light::Rectangle(window), Light::Rectangle(across), bulb([0.0, height, 0.0], 5.0, shadow)];
             for light in lights {
-                holds(bounded(&format!("area light at {height}"), &lit(&sphere(), ior, &[light]), 3.0));
+                holds(bounded(&format!("area light at {height}"), &lit(&mut body, &[light]), 3.0));
             }
         }
     }
     let near = facing([0.0, 51.0, 0.0], [0.0; 3], 30.0, false);
-    notices(bounded("area light: too bright", &lit(&sphere(), 1.0, &[Light::Rectangle(near)]), 2.0));
+    notices(bounded(
+        "area light: too bright",
+        &lit(&mut body(&sphere(), 1.0), &[Light::Rectangle(near)]),
+        2.0,
+    ));
 }
 
 /// The same scene in metres and in millimetres.
@@ -212,25 +217,32 @@ fn the_unit_of_length_does_not_matter() {
     }
 }
 
-fn shadowed(light: Light, twin: &[Source], area_points: u32) -> f64 {
-    rmse_by_area(&lit_with(&creature(), 1.3, area_points, &[light]).irradiance(), twin)
+/// From above and behind, so that ears and head stand in the way of what the camera sees.
+fn from_above(shadow: bool) -> [(&'static str, Light); 2] {
+    [
+        ("window", Light::Rectangle(facing([30.0, 180.0, -20.0], [0.0, 40.0, 0.0], 40.0, shadow))),
+        ("bulb", bulb([-40.0, 170.0, 30.0], 25.0, shadow)),
+    ]
 }
 
 #[test]
 fn shadows_follow_traced_rays() {
-    for ((name, light), (_, open)) in lights(true).into_iter().zip(lights(false)) {
-        let twin = lit_with(&creature(), 1.3, 16, &[open]).twin_sources_lit(
-            &rest(&creature()),
-            &[translume_tests::light(&light, 1.0)],
-            [2, 8],
-        );
-        let check = |light, points| {
-            let error = shadowed(light, &twin, points);
-            at_most(&format!("area light: shadow of the {name}, {points} points, relative RMSE"), error, 0.1)
+    let mut body = body(&creature(), 1.3);
+    let usual = *body.body.shadows();
+    for ((name, light), (_, open)) in from_above(true).into_iter().zip(from_above(false)) {
+        lit(&mut body, &[open]);
+        let twin = [translume_tests::light(&light, 1.0)];
+        let twin = body.twin_sources_lit(&rest(&body.model), &twin, [2, 8]);
+        let mut error = |light, area_points| {
+            body.body.set_shadows(ShadowOptions { area_points, ..usual }).unwrap();
+            let error = rmse_by_area(&lit(&mut body, &[light]), &twin);
+            eprintln!("area light: shadow of the {name}, {area_points} points: {error:.4}");
+            error
         };
-        holds(check(light, 16));
-        let [few, many] = [4, 16].map(|points| shadowed(light, &twin, points));
-        holds(at_most(&format!("area light: {name}, 16 points over 4"), many / few, 1.0));
-        notices(check(open, 16));
+        let check = |error| at_most("area light: shadow, relative RMSE by area", error, 0.05);
+        let (few, many) = (error(light, 4), error(light, 16));
+        holds(check(many));
+        holds(at_most("area light: error of 16 points over that of 4", many / few, 0.8));
+        notices(check(error(open, 16)));
     }
 }
