@@ -19,10 +19,10 @@ fn body(model: &Arc<Model>, directions: u32) -> Fixture {
     })
 }
 
-fn lit(model: &Arc<Model>, directions: u32, lights: &[Light]) -> Vec<[f64; 3]> {
-    let mut fixture = body(model, directions);
-    fixture.light(&Pose::rest(model.mesh.targets.len()).frame(lights));
-    let irradiance = fixture.irradiance();
+fn lit(body: &mut Fixture, lights: &[Light]) -> Vec<[f64; 3]> {
+    let targets = body.model.mesh.targets.len();
+    body.light(&Pose::rest(targets).frame(lights));
+    let irradiance = body.irradiance();
     // Comparisons of maxima pass over what is no number.
     assert!(irradiance.iter().flatten().all(|e| e.is_finite()), "[{}] {lights:?}", gpu().adapter_name);
     irradiance
@@ -62,7 +62,7 @@ fn open_sky(seen: &EnvironmentMap, twin: &translume_reference::EnvironmentMap) -
     fixture.light(&Pose::rest(0).frame(&[environment(seen, false)]));
     let sources = fixture.sources();
     let exact: Vec<_> = sources.iter().map(|s| twin.irradiance(f64::from(ETA), s.normal)).collect();
-    // What lies above order 2, and a texel's four normals for that of its middle.
+    // What lies above order 2, and a texel's four normals for that of its middle; measured .29 %.
     at_most("sky: open environment, relative RMSE", relative_rmse(&luminous(&sources), &exact), 0.01)
 }
 
@@ -74,42 +74,45 @@ fn a_smooth_sky_is_its_harmonics() {
     notices(open_sky(&other, &twin));
 }
 
-/// A plane turned in many ways has one normal each time.
-fn shader(light: &EnvironmentLight, expected: &EnvironmentLight) -> Check {
-    let mut fixture = body(&plane(10.0, 16), 64);
-    let mut worst = 0.0_f64;
-    for k in 0..20 {
-        let axis = Vec3::new((0.7 * k as f32).sin(), 0.3, (1.1 * k as f32).cos()).normalize();
-        let turn = Mat4::from_quat(Quat::from_axis_angle(axis, 0.8 * k as f32));
-        let lights = [Light::Environment(*light)];
-        fixture.light(&Frame {
-            model: turn.to_cols_array_2d(),
-            lighting: Lighting::Lights(&lights),
-            ..Frame::default()
-        });
-        let normal = turn.transform_vector3(Vec3::Y).to_array();
-        let expected = expected.irradiance(ETA, normal);
-        for (found, expected) in fixture.irradiance()[9].iter().zip(expected) {
-            worst = worst.max((found / f64::from(expected) - 1.0).abs());
-        }
-    }
-    // Nine products in single precision.
-    at_most("sky: WGSL against Rust", worst, 1e-5)
+/// Irradiance of a plane turned in many ways, which has one normal each time.
+fn turned_planes(light: &EnvironmentLight) -> Vec<([f32; 3], [f64; 3])> {
+    let mut body = body(&plane(10.0, 16), 64);
+    let lights = [Light::Environment(*light)];
+    let turn = |k: u32| {
+        let [s, c] = [(0.7 * k as f32).sin(), (1.1 * k as f32).cos()];
+        Mat4::from_quat(Quat::from_axis_angle(Vec3::new(s, 0.3, c).normalize(), 0.8 * k as f32))
+    };
+    let look = |k: u32| {
+        let (model, lighting) = (turn(k).to_cols_array_2d(), Lighting::Lights(&lights));
+        body.light(&Frame { model, lighting, ..Frame::default() });
+        (turn(k).transform_vector3(Vec3::Y).to_array(), body.irradiance()[9])
+    };
+    (0..20).map(look).collect()
 }
 
 #[test]
 fn the_shader_sums_what_rust_sums() {
     let light = EnvironmentLight { shadow: false, ..maps([64, 32], dusk).0.project() };
-    holds(shader(&light, &light));
+    let found = turned_planes(&light);
+    let check = |expected: &EnvironmentLight| {
+        let errors = found.iter().flat_map(|(normal, found)| {
+            let expected = expected.irradiance(ETA, *normal).map(f64::from);
+            [0, 1, 2].map(|k| (found[k] / expected[k] - 1.0).abs())
+        });
+        // Nine products in single precision; measured 2.7e-7.
+        at_most("sky: WGSL against Rust, sum of relative errors", errors.sum(), 1e-5)
+    };
+    holds(check(&light));
     for k in 0..9 {
         let mut other = light;
         other.coefficients[k][1] += 0.01;
-        notices(shader(&light, &other));
+        notices(check(&other));
     }
 }
 
 fn occluded(what: &str, light: Light, directions: u32, twin: &[Source]) -> Check {
-    let error = rmse_by_area(&lit(&creature(), directions, &[light]), twin);
+    let error = rmse_by_area(&lit(&mut body(&creature(), directions), &[light]), twin);
+    // Four directions above the horizon for each that is half hidden. Measured 3.2 % with 64, 3.0 % with 128; unoccluded 12 %.
     at_most(&format!("sky: occluded {what}, {directions} directions, relative RMSE"), error, 0.05)
 }
 
@@ -139,16 +142,14 @@ fn an_occluded_smooth_sky_follows_traced_rays() {
 }
 
 /// Frames with one light each, added up, against a frame with all of them.
-fn adds_up(lights: &[Light], joint: &[Light]) -> f64 {
-    let mut sum: Vec<[f64; 3]> = Vec::new();
+fn adds_up(body: &mut Fixture, lights: &[Light], joint: &[Light]) -> f64 {
+    let mut sum = vec![[0.0; 3]; body.model.atlas.texels.len()];
     for light in lights {
-        let one = lit(&creature(), 64, &[*light]);
-        sum.resize(one.len(), [0.0; 3]);
-        for (sum, one) in sum.iter_mut().zip(one) {
+        for (sum, one) in sum.iter_mut().zip(lit(body, &[*light])) {
             *sum = std::array::from_fn(|k| sum[k] + one[k]);
         }
     }
-    relative_rmse(&lit(&creature(), 64, joint), &sum)
+    relative_rmse(&lit(body, joint), &sum)
 }
 
 #[test]
@@ -159,21 +160,26 @@ fn open_and_shadowed_lights_of_the_sky_add_up() {
         Light::Ambient(AmbientLight { radiance: [0.3, 0.2, 0.9], axis, half_angle: 0.8, shadow })
     };
     let open = [environment(&map, false), cone(false)];
-    let check =
-        |lights: &[Light], joint: &[Light]| at_most("sky: sum of lights", adds_up(lights, joint), 1e-5);
+    let mut body = body(&creature(), 64);
+    let mut check = |lights: &[Light], joint: &[Light]| {
+        // Single precision; measured 4e-8.
+        at_most("sky: sum of lights", adds_up(&mut body, lights, joint), 1e-5)
+    };
     let one_shadowed = [open[0], ambient(true), open[1]];
     holds(check(&one_shadowed, &one_shadowed));
     notices(check(&one_shadowed, &[open[0], ambient(false), open[1]]));
-    // All that is shadowed shares one visible share of it, which is why it does not quite add up.
+    // All that is shadowed shares one visible share of it, which is why it does not quite add up. Measured .14 %.
     let shadowed = [environment(&map, true), ambient(true), cone(true)];
-    holds(at_most("sky: sum of shadowed lights", adds_up(&shadowed, &shadowed), 0.02));
-    notices(at_most("sky: sum without the last", adds_up(&shadowed, &shadowed[..2]), 0.02));
+    holds(at_most("sky: sum of shadowed lights", adds_up(&mut body, &shadowed, &shadowed), 0.02));
+    notices(at_most("sky: sum without the last", adds_up(&mut body, &shadowed, &shadowed[..2]), 0.02));
 }
 
 /// What a body keeps from itself.
 fn occlusion(model: &Arc<Model>) -> Check {
-    let [open, shadowed] = [false, true].map(|shadow| lit(model, 64, &[ambient(shadow)]));
+    let mut body = body(model, 64);
+    let [open, shadowed] = [false, true].map(|shadow| lit(&mut body, &[ambient(shadow)]));
     let darkest = open.iter().zip(&shadowed).map(|(open, shadowed)| 1.0 - shadowed[0] / open[0]);
+    // A chord of the sphere's edges is a hair above its triangles. Measured .26 %: fifteenths of grazing directions.
     at_most("sky: occlusion, greatest", darkest.fold(0.0, f64::max), 0.005)
 }
 
@@ -185,11 +191,12 @@ fn a_convex_body_is_not_dark() {
 
 #[test]
 fn narrow_cones_stay_bounded() {
+    let mut body = body(&creature(), 64);
     for half_angle in [0.0, 1e-4, 0.02, 0.1, 0.5, 2.0] {
         let cone = |shadow| {
             Light::Ambient(AmbientLight { axis: [0.2, 0.5, -0.7], half_angle, shadow, ..Default::default() })
         };
-        let [open, shadowed] = [false, true].map(|shadow| lit(&creature(), 64, &[cone(shadow)]));
+        let [open, shadowed] = [false, true].map(|shadow| lit(&mut body, &[cone(shadow)]));
         let excess = open
             .iter()
             .zip(&shadowed)
@@ -232,7 +239,8 @@ fn a_sun_has_to_be_split_off() {
     let (peaks, rest) = map.split_peaks();
     assert_eq!(peaks.len(), 1);
     let split = [Light::Directional(peaks[0]), Light::Environment(rest)];
-    let error = |lights: &[Light]| over_mean(&lit(&creature(), 64, lights), &twin);
+    let mut body = body(&creature(), 64);
+    let mut error = |lights: &[Light]| over_mean(&lit(&mut body, lights), &twin);
     let check = |error| at_most("sky: sun split off, RMSE over mean", error, 0.05);
     // Measured 3.2 %.
     holds(check(error(&split)));
