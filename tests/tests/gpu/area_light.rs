@@ -142,7 +142,8 @@ fn far_lights_are_points_or_parallel() {
         let half = 0.01 * distance;
         let window = facing(center, [0.0; 3], half, true);
         let parallel = sun(distance, 4.0 * half * half, window.radiance);
-        // Parts of the body are up to 50 mm nearer, twice that in the square; the light itself is 1/100 of the distance wide.
+        // Parts of the body are up to 50 mm nearer, twice that in the square; the light itself is 1/100 of the distance wide. Measured .76 %
+        // and .10 %.
         let bound = 2.0 * 50.0 / f64::from(distance) + 1e-3;
         holds(alike("area light: far window", Light::Rectangle(window), parallel, bound));
         let disc = std::f32::consts::PI * half * half;
@@ -156,7 +157,7 @@ fn far_lights_are_points_or_parallel() {
         Light::Point(PointLight { position: [90.0, 120.0, 0.0], intensity, shadow: false, region: None })
     };
     let small = bulb([90.0, 120.0, 0.0], 1.0, false);
-    // The next term is of the order of (1/100)².
+    // The next term is of the order of (1/100)²; measured 4e-5.
     holds(alike("area light: small bulb", small, point(std::f32::consts::PI), 2e-3));
     notices(alike("area light: stronger point", small, point(1.01 * std::f32::consts::PI), 2e-3));
 }
@@ -167,7 +168,7 @@ fn bounded(what: &str, values: &[[f64; 3]], radiance: f64) -> Check {
     let finite = values.iter().flatten().all(|x| x.is_finite());
     at_least(&format!("{what}: least"), if finite { least } else { f64::NAN }, 0.0)?;
     let most = values.iter().flatten().copied().fold(0.0, f64::max);
-    // Closed forms in single precision; measured 2e-5 more than π times the radiance at most.
+    // Closed forms in single precision; measured .998 at most.
     at_most(&format!("{what}: most"), most / (PI * radiance), 1.0 + 1e-4)
 }
 
@@ -205,7 +206,7 @@ fn in_metres(change: f32, shadow: bool) -> Check {
     let pose = Pose::rest(0);
     metres.light(&pose.frame(&one));
     millimetres.light(&pose.frame(&other));
-    // Roundings, and looks into a map that they push across an edge.
+    // Roundings, and looks into a map that they push across an edge; measured 1.5e-7.
     at_most("area light: metres", relative_rmse(&metres.irradiance(), &millimetres.irradiance()), 1e-3)
 }
 
@@ -239,6 +240,7 @@ fn shadows_follow_traced_rays() {
             eprintln!("area light: shadow of the {name}, {area_points} points: {error:.4}");
             error
         };
+        // Measured 2.8 % with 16 points, with 4 4.4 % (window) and 8.4 % (bulb), without shadow 29 %.
         let check = |error| at_most("area light: shadow, relative RMSE by area", error, 0.05);
         let (few, many) = (error(light, 4), error(light, 16));
         holds(check(many));

@@ -17,7 +17,7 @@ fn host_buffer(size: u64, usage: BufferUsages) -> wgpu::Buffer {
     })
 }
 
-/// What a body gathered, times a factor of the host's.
+/// What a body gathered, in a buffer of the host's.
 fn copied(fixture: &Fixture) -> wgpu::Buffer {
     let from = fixture.body.outputs().irradiance;
     let buffer = host_buffer(from.size(), BufferUsages::COPY_SRC | BufferUsages::COPY_DST);

@@ -4,6 +4,7 @@
 #![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used, reason = "a failure here is a failed test")]
 
 mod area_light;
+mod caster_host;
 mod casters;
 mod closure;
 mod cluster;

@@ -47,7 +47,8 @@ fn melted(weight: f32) -> Pose {
 }
 
 fn fixture() -> Fixture {
-    Fixture::new(&creature(), |_| ())
+    // Small maps: what counts here is how many.
+    Fixture::new(&creature(), |d| (d.shadows.resolution, d.shadows.direction_resolution) = (128, 64))
 }
 
 #[test]
@@ -136,7 +137,7 @@ fn other_options_are_as_good_as_new() {
         ShadowOptions { area_points: 4, ..usual },
         ShadowOptions { area_points: 25, resolution: 512, ..usual },
         ShadowOptions { directions: 16, ..usual },
-        ShadowOptions { direction_resolution: 64, ..usual },
+        ShadowOptions { direction_resolution: 32, ..usual },
         usual,
     ];
     let (pose, lights) = (melted(0.2), mixed());
@@ -164,6 +165,7 @@ fn other_options_are_as_good_as_new() {
 fn thrifty() -> Fixture {
     Fixture::new(&creature(), |d| {
         (d.shadows.directions, d.shadows.directions_per_frame) = (32, 8);
+        d.shadows.direction_resolution = 64;
     })
 }
 
@@ -176,7 +178,9 @@ fn looks(fixture: &mut Fixture, pose: &Pose, lights: &[Light]) -> bool {
 fn the_sky_may_be_renewed_over_several_frames() {
     let (first, second, lights) = (melted(0.0), melted(0.8), [sky(true)]);
     let whole = |pose: &Pose| {
-        let mut fixture = Fixture::new(&creature(), |d| d.shadows.directions = 32);
+        let mut fixture = Fixture::new(&creature(), |d| {
+            (d.shadows.directions, d.shadows.direction_resolution) = (32, 64);
+        });
         fixture.light(&pose.frame(&lights));
         fixture.irradiance()
     };
