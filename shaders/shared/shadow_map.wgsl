@@ -9,7 +9,8 @@ fn shadow_view(first: u32, count: u32, to_light: vec3f) -> u32 {
 // Position on the map and depth of a point.
 fn on_map(view: ShadowView, point: vec3f) -> vec3f {
     let clip = view.matrix * vec4f(point, 1.0);
-    let ndc = clip.xyz / clip.w;
+    // A point at the light itself is nearer than anything on the map.
+    let ndc = clip.xyz / max(clip.w, 1e-12);
     let uv = (ndc.xy * vec2f(0.5, -0.5) + 0.5) * view.tile.z + view.tile.xy;
     return vec3f(uv * f32(textureDimensions(shadow_maps).x) - 0.5, ndc.z);
 }

@@ -1,6 +1,7 @@
 //! Comparisons that can be told to hold and told to fail.
 
 use crate::gpu;
+use translume_reference::gather::Source;
 
 /// What a comparison found: nothing, or what is wrong with the figures.
 pub type Check = Result<(), String>;
@@ -65,4 +66,18 @@ pub fn relative_rmse(measured: &[[f64; 3]], reference: &[[f64; 3]]) -> f64 {
         (0..measured.len()).flat_map(|i| [0, 1, 2].map(|k| pick(i, k).powi(2))).sum()
     };
     (squares(&|i, k| measured[i][k] - reference[i][k]) / squares(&|i, k| reference[i][k])).sqrt()
+}
+
+/// As [`relative_rmse`], each texel by its area: texels on the rim of a chart, which only the picture interpolates from, have none.
+///
+/// # Panics
+/// If the lengths differ.
+#[must_use]
+pub fn rmse_by_area(measured: &[[f64; 3]], reference: &[Source]) -> f64 {
+    assert_eq!(measured.len(), reference.len(), "[{}] lengths differ", gpu().adapter_name);
+    let weighted = |value: &[f64; 3], source: &Source| value.map(|x| x * source.area.sqrt());
+    let measured: Vec<_> =
+        measured.iter().zip(reference).map(|(value, source)| weighted(value, source)).collect();
+    let reference: Vec<_> = reference.iter().map(|source| weighted(&source.irradiance, source)).collect();
+    relative_rmse(&measured, &reference)
 }

@@ -14,7 +14,7 @@ mod models;
 mod picture;
 mod twin;
 
-pub use check::{Check, at_least, at_most, holds, notices, relative_rmse};
+pub use check::{Check, at_least, at_most, holds, notices, relative_rmse, rmse_by_area};
 pub use fixture::Fixture;
 pub use gpu::{Gpu, gpu};
 pub use models::{Model, creature, cuboids, limb, plane, sphere, sphere_with, teapot};

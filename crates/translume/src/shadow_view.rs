@@ -13,6 +13,9 @@ const SINGLE_VIEW_COSINE: f32 = 0.5;
 const WIDEST_CONE: f32 = 1.05;
 /// Room around the body for filtering, in texels of the map.
 const MARGIN: f32 = 4.0;
+/// Least half width of a view, mm (of a perspective view at a depth of 1 mm), and least depth, mm: a pose may gather its body in one point,
+/// and a matrix that divides by its extent would not be finite.
+const LEAST_EXTENT: f32 = 1e-6;
 /// Tiles are as wide as a layer of the array, or down to a sixteenth of it.
 const MAX_SHIFT: u32 = 4;
 
@@ -173,17 +176,17 @@ fn cone_view(position: Vec3, axis: Vec3, outer_angle: f32, subject: &Subject<'_>
 
 /// A little more than the distance of the furthest corner.
 fn reach(position: Vec3, subject: &Subject<'_>) -> f32 {
-    1.02 * subject.corners.iter().map(|corner| corner.distance(position)).fold(0.0, f32::max)
+    1.02 * subject.corners.iter().map(|corner| corner.distance(position)).fold(LEAST_EXTENT, f32::max)
 }
 
 fn directional_view(to_light: Vec3, subject: &Subject<'_>, resolution: u32, shift: u32) -> View {
     let look = view::look_to_mat4(subject.centre(), -to_light, to_light.any_orthonormal_vector());
     let seen = subject.corners.map(|corner| look.transform_point3(corner));
     let (low, high) = (reduce(&seen, Vec3::min), reduce(&seen, Vec3::max));
-    let half = 0.5 * (high - low).truncate().max_element().max(f32::MIN_POSITIVE);
+    let half = 0.5 * (high - low).truncate().max_element().max(LEAST_EXTENT);
     let half = half * margin(resolution >> shift);
     let middle = 0.5 * (low + high);
-    let slack = 0.01 * (high - low).max_element();
+    let slack = 0.01 * (high - low).max_element().max(LEAST_EXTENT);
     let casters = subject.casters.into_iter().flatten();
     let nearest = casters.map(|corner| look.transform_point3(*corner).z).fold(high.z, f32::max);
     let matrix = proj::directx::orthographic(
@@ -230,7 +233,7 @@ fn is_narrow(position: Vec3, subject: &Subject<'_>) -> bool {
 fn narrow_view(position: Vec3, subject: &Subject<'_>, resolution: u32, shift: u32) -> View {
     let look = towards_body(position, subject);
     let seen = subject.corners.map(|corner| look.transform_point3(corner));
-    let tangent = seen.iter().map(|p| p.x.abs().max(p.y.abs()) / -p.z).fold(0.0, f32::max);
+    let tangent = seen.iter().map(|p| p.x.abs().max(p.y.abs()) / -p.z).fold(LEAST_EXTENT, f32::max);
     let (near, far) = (-reduce(&seen, Vec3::max).z, -reduce(&seen, Vec3::min).z);
     let near = if subject.casters.is_some() { 1e-4 * far } else { 0.98 * near };
     perspective(look, tangent, near, 1.02 * far, resolution, shift)
@@ -351,6 +354,20 @@ mod tests {
         };
         assert!(roof.iter().all(|corner| holds(&view(Some(&roof)), *corner)));
         assert!(!roof.iter().any(|corner| holds(&view(None), *corner)));
+    }
+
+    /// A morph target may gather a body in one point, even in that where the light is.
+    #[test]
+    fn a_body_without_extent_has_finite_views() {
+        let corners = [Vec3::new(1.0, 2.0, 3.0); 8];
+        let subject = Subject { corners: &corners, casters: None };
+        let options = ShadowOptions::default();
+        let beam = Light::Directional(DirectionalLight::default());
+        let point = |position| Light::Point(PointLight { position, ..Default::default() });
+        for light in [beam, point([1.0, 9.0, 3.0]), point([1.0, 2.0, 3.0])] {
+            let views = light_views(&light, 1.0, &subject, &options).views;
+            assert!(!views.is_empty() && views.iter().all(|view| view.matrix.is_finite()), "{light:?}");
+        }
     }
 
     /// Mixed widths fill layers without gap or overlap.

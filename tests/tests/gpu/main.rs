@@ -3,6 +3,9 @@
 
 #![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used, reason = "a failure here is a failed test")]
 
+mod area_light;
+mod caster_host;
+mod casters;
 mod closure;
 mod cluster;
 mod composite;
@@ -12,7 +15,11 @@ mod furnace;
 mod gather;
 mod golden;
 mod hard_cases;
+mod hard_light;
+mod irradiance;
 mod layout;
 mod scatter;
 mod shadow;
+mod sky;
 mod stages;
+mod work;

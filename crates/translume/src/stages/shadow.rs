@@ -27,7 +27,8 @@ pub(crate) struct DepthMaps {
 pub struct ShadowView {
     /// World space to clip space, column-major. Depth is reversed: 1 at the near plane, 0 at the far one, greater is nearer.
     pub view_projection: [[f32; 4]; 4],
-    /// Its number among those of the next frame, from 0, in the order they are drawn.
+    /// Its number among those of the next frame, from 0. Those that share a layer of the depth maps are drawn together, so not always in
+    /// this order.
     pub index: usize,
     /// Which of the frame's lights it belongs to; `None` for the sky.
     pub light: Option<usize>,
