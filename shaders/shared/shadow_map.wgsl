@@ -19,15 +19,20 @@ fn on_map(view: ShadowView, point: vec3f) -> vec3f {
 // own middle: comparing all with the depth of the point would let a slanted surface shadow itself.
 fn lit_at(view: ShadowView, point: vec3f, slope: vec2f) -> f32 {
     let here = on_map(view, point);
-    let base = floor(here.xy);
-    let share = here.xy - base;
+    return lit_texels(here.xy, here.z, slope, view.layer);
+}
+
+// place: in texels of the layer, the middle of the first one at 0      slope: of depth, per texel
+fn lit_texels(place: vec2f, here: f32, slope: vec2f, layer: u32) -> f32 {
+    let base = floor(place);
+    let share = place - base;
     let first = vec2i(base);
     // Reversed depth: what lies nearer to the light is greater.
-    let depth = here.z + dot(slope, -share);
-    let a = f32(textureLoad(shadow_maps, first, view.layer, 0) <= depth);
-    let b = f32(textureLoad(shadow_maps, first + vec2i(1, 0), view.layer, 0) <= depth + slope.x);
-    let c = f32(textureLoad(shadow_maps, first + vec2i(0, 1), view.layer, 0) <= depth + slope.y);
-    let d = f32(textureLoad(shadow_maps, first + vec2i(1, 1), view.layer, 0) <= depth + slope.x + slope.y);
+    let depth = here - dot(slope, share);
+    let a = f32(textureLoad(shadow_maps, first, layer, 0) <= depth);
+    let b = f32(textureLoad(shadow_maps, first + vec2i(1, 0), layer, 0) <= depth + slope.x);
+    let c = f32(textureLoad(shadow_maps, first + vec2i(0, 1), layer, 0) <= depth + slope.y);
+    let d = f32(textureLoad(shadow_maps, first + vec2i(1, 1), layer, 0) <= depth + slope.x + slope.y);
     return mix(mix(a, b, share.x), mix(c, d, share.x), share.y);
 }
 
@@ -52,8 +57,13 @@ fn depth_slope(view: ShadowView, point: vec3f, tangent: vec3f, bitangent: vec3f)
 // tilt: tangent of that angle      half_width: of the square, mm
 fn lift(view: ShadowView, position: vec3f, face: vec3f, tilt: f32, half_width: f32) -> vec3f {
     let depth = mix(1.0, (view.matrix * vec4f(position, 1.0)).w, view.perspective);
-    let reach = 1.4142136 * view.texel * depth;
-    return position + face * (0.1 * reach + 1.25 * tilt * (reach + 1.4142136 * half_width));
+    return position + face * lift_height(view.texel * depth, tilt, half_width);
+}
+
+// texel: width of a texel of the map there, mm
+fn lift_height(texel: f32, tilt: f32, half_width: f32) -> f32 {
+    let reach = 1.4142136 * texel;
+    return 0.1 * reach + 1.25 * tilt * (reach + 1.4142136 * half_width);
 }
 
 // Faces in the order +x, −x, +y, −y, +z, −z.

@@ -93,7 +93,17 @@ pub(crate) struct ShadowViewLayout {
 pub(crate) struct DirectionsLayout {
     pub word: u32,
     pub padding: [u32; 3],
-    pub views: [ShadowViewLayout; 8],
+    pub eight: [DirectionLayout; 8],
+}
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub(crate) struct DirectionLayout {
+    pub column: [f32; 4],
+    pub row: [f32; 4],
+    pub depth: [f32; 4],
+    pub to_sky: [f32; 3],
+    pub texel: f32,
 }
 
 #[repr(C)]
@@ -276,7 +286,8 @@ mod tests {
         check!(GATHER, "Ambient", AmbientLayout, [radiance, cone_cosine, axis, shadow, table]);
         check!(GATHER, "ShadowView", ShadowViewLayout, [matrix, tile, layer, texel, perspective]);
         check!(GATHER, "Sky", SkyLayout, [direction, radiance]);
-        check!(VISIBILITY, "Directions", DirectionsLayout, [word, views]);
+        check!(VISIBILITY, "Direction", DirectionLayout, [column, row, depth, to_sky, texel]);
+        check!(VISIBILITY, "Directions", DirectionsLayout, [word, eight]);
         check!(
             GATHER,
             "Gather",

@@ -8,11 +8,10 @@
 use crate::ShadowOptions;
 use crate::buffers::Buffers;
 use crate::gpu::{self, DEPTH_MAPS, Pass, READ, UNIFORM, UNIFORM_ARRAY, WRITE};
-use crate::layout::DirectionsLayout;
-use crate::lighting::view_layout;
+use crate::layout::{DirectionLayout, DirectionsLayout};
 use crate::shadow_view::{Subject, Tile, View, sky_view};
 use crate::stages::shadow::{DepthMaps, DrawCasters, Shadow};
-use glam::Vec3;
+use glam::{Vec3, Vec4};
 
 /// Directions that share a word of a texel.
 const PER_WORD: usize = 8;
@@ -123,13 +122,26 @@ impl SkyMemory {
                 let square = (k % (PER_BATCH / PER_WORD) * PER_WORD) as u32 + slot;
                 let tile = Tile { layer: 0, x: square % SQUARES * width, y: square / SQUARES * width, width };
                 let view = sky_view(*direction, subject, tile);
-                layout.views[slot as usize] = view_layout(&view, SQUARES * width);
+                layout.eight[slot as usize] = direction_layout(&view, *direction);
                 self.views.push(view);
             }
             queue.write_buffer(&memory.uniforms, STRIDE * k as u64, bytemuck::bytes_of(&layout));
         }
         memory.maps.write_views(queue, 0, &self.views);
         self.stale > 0
+    }
+}
+
+/// The rows of a parallel view's matrix, in texels of the map.
+fn direction_layout(view: &View, to_sky: Vec3) -> DirectionLayout {
+    let half = 0.5 * view.tile.width as f32;
+    let middle = |corner: u32| Vec4::W * (corner as f32 + half - 0.5);
+    DirectionLayout {
+        column: (view.matrix.row(0) * half + middle(view.tile.x)).to_array(),
+        row: (view.matrix.row(1) * -half + middle(view.tile.y)).to_array(),
+        depth: view.matrix.row(2).to_array(),
+        to_sky: to_sky.to_array(),
+        texel: view.texel,
     }
 }
 
