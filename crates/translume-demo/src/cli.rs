@@ -178,7 +178,7 @@ pub struct Report {
     /// Width of the atlas in texels.
     #[arg(long, value_name = "N", default_value_t = 512)]
     pub atlas: u32,
-    /// The reference looks at every Nth texel. By default 8, quickly 32.
+    /// The reference looks at every Nth texel, by default 7, quickly 31. Texels come in groups of four, so odd numbers are fairer.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=65536))]
     pub every: Option<u32>,
     /// Fewer settings, fewer repetitions.

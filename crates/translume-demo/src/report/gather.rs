@@ -21,7 +21,7 @@ pub fn run(arguments: &Report) -> Result<(), Error> {
     let gpu = Gpu::new()?;
     check_atlas(arguments.atlas, &gpu)?;
     let translume = Translume::new(&gpu.device)?;
-    let every = arguments.every.unwrap_or(if arguments.quick { 32 } else { 8 });
+    let every = arguments.every.unwrap_or(if arguments.quick { 31 } else { 7 });
     let (warm_up, timed) = if arguments.quick { (1, 1) } else { (2, 5) };
     let header = Header { adapter: &gpu.adapter, atlas: arguments.atlas, every, timed };
     let mut rows = Vec::new();
