@@ -1,5 +1,9 @@
 // Gather: every light → position, normal, live area and irradiance of every texel.
 
+// A frame without lights that have an area, or without a shadow on the sky, runs a pipeline without them.
+override AREA_LIGHTS: bool = true;
+override SHADOWED_SKY: bool = true;
+
 @group(0) @binding(0) var<uniform> lighting: Gather;
 @group(0) @binding(1) var<storage, read> texels: array<Texel>;
 @group(0) @binding(2) var<storage, read> triangles: array<u32>;
@@ -28,7 +32,8 @@ fn irradiance(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) grou
 
     var light = vec3f(0.0);
     var count = 0.0;
-    let seen = sky_share(index, normal);
+    var seen = vec3f(1.0);
+    if SHADOWED_SKY { seen = sky_share(index, normal); }
     for (var k = 0u; k < POINTS; k++) {
         let point = texel.points[k];
         if point.triangle != NOWHERE {
@@ -51,7 +56,7 @@ fn clamped(w: vec2f) -> vec2f {
 fn entering(receiver: Receiver, seen: vec3f) -> vec3f {
     var light = sky(receiver.normal, seen);
     for (var k = 0u; k < lighting.light_count; k++) {
-        if lighting.lights[k].kind >= RECTANGLE {
+        if AREA_LIGHTS && lighting.lights[k].kind >= RECTANGLE {
             light += area_light(k, receiver);
         } else {
             light += direct(k, receiver);

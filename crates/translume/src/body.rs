@@ -13,6 +13,7 @@ use crate::profile::Dipole;
 use crate::shadow_view::{Subject, View};
 use crate::stages::cluster::Tree;
 use crate::stages::deform::DeformGroups;
+use crate::stages::gather::Kinds;
 use crate::stages::scatter::{Method, Scatter};
 use crate::stages::shadow::{DepthMaps, ShadowView};
 use crate::stages::visibility::SkyMemory;
@@ -47,6 +48,7 @@ pub struct Body {
     /// Where the next frame's pose is made, so that a refused one leaves no trace and none allocates.
     next_pose: Pose,
     lights: Vec<Light>,
+    kinds: Kinds,
     casters: Option<Casters>,
     /// Irradiance that the host supplies in place of lights.
     host_irradiance: Option<wgpu::Buffer>,
@@ -114,6 +116,7 @@ impl Body {
             pose: Pose::rest(&extent),
             next_pose: Pose::rest(&extent),
             lights: Vec::new(),
+            kinds: Kinds::default(),
             casters: None,
             host_irradiance: None,
             views: Vec::new(),
@@ -205,6 +208,7 @@ impl Body {
         }
         self.host_irradiance = host_irradiance.cloned();
         self.casters = frame.casters;
+        self.kinds = lighting::kinds(lights);
         self.model = model;
         self.lights.clear();
         self.lights.extend_from_slice(lights);
@@ -294,7 +298,12 @@ impl Body {
             work.draws += self.views.len() as u32;
         }
         if pending.contains(Stage::Gather) {
-            stages.gather.encode(&mut Pass::begin(encoder, "gather", &mut work), &self.gather_group, texels);
+            stages.gather.encode(
+                &mut Pass::begin(encoder, "gather", &mut work),
+                &self.gather_group,
+                self.kinds,
+                texels,
+            );
         }
         if pending.contains(Stage::Cluster) {
             if let Some(irradiance) = &self.host_irradiance {

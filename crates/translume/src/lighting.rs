@@ -4,6 +4,7 @@ use crate::layout::{
     AmbientLayout, GatherLayout, LightLayout, MAX_EMITTERS, MAX_VIEWS, NO_SHADOW, ShadowViewLayout, SkyLayout,
 };
 use crate::shadow_view::{self, LightViews, Subject, View};
+use crate::stages::gather::Kinds;
 use crate::{AmbientLight, EnvironmentLight, Error, Light, ShadowOptions, light};
 use glam::Vec3;
 
@@ -36,6 +37,12 @@ pub(crate) fn has_shadowed_sky(lights: &[Light]) -> bool {
         Light::Environment(light) => light.shadow,
         _ => false,
     })
+}
+
+/// What the gather's pipeline has to contain.
+pub(crate) fn kinds(lights: &[Light]) -> Kinds {
+    let area = |light: &Light| matches!(light, Light::Rectangle(_) | Light::Sphere(_));
+    Kinds { area_lights: lights.iter().any(area), shadowed_sky: has_shadowed_sky(lights) }
 }
 
 pub(crate) fn gather(lights: &[Light], body: &GatherBody<'_>) -> Result<Gathering, Error> {

@@ -67,12 +67,13 @@ fn draw(
         .x_label_area_size(40)
         .y_label_area_size(64)
         .build_cartesian_2d(
-            range(points().map(|point| point.0)).log_scale(),
-            range(points().map(|point| point.1)).log_scale(),
+            decades(range(points().map(|point| point.0))).log_scale(),
+            decades(range(points().map(|point| point.1))).log_scale(),
         )?;
     chart
         .configure_mesh()
         .max_light_lines(0)
+        .x_labels(6)
         .x_desc("ms")
         .y_desc("RMS error / mean irradiance, %")
         .x_label_formatter(&|ms| format!("{}", rounded(*ms)))
@@ -100,6 +101,11 @@ fn draw(
 fn range(values: impl Iterator<Item = f64>) -> std::ops::Range<f64> {
     let (low, high) = values.fold((f64::INFINITY, 0.0_f64), |(low, high), x| (low.min(x), high.max(x)));
     if low > high { 0.1..10.0 } else { 0.7 * low..1.4 * high }
+}
+
+/// Powers of ten around a range: without one an axis would have no figures.
+fn decades(range: std::ops::Range<f64>) -> std::ops::Range<f64> {
+    10.0_f64.powf(range.start.log10().floor())..10.0_f64.powf(range.end.log10().ceil())
 }
 
 /// To three digits.

@@ -9,7 +9,24 @@ use crate::stages::shadow::DepthMaps;
 
 pub(crate) struct Gather {
     layout: wgpu::BindGroupLayout,
-    irradiance: wgpu::ComputePipeline,
+    /// For each of [`Kinds::ALL`].
+    irradiance: [wgpu::ComputePipeline; 4],
+}
+
+/// Which costly kinds of light a frame has. The pipelines of the others do not contain them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Kinds {
+    pub area_lights: bool,
+    pub shadowed_sky: bool,
+}
+
+impl Kinds {
+    const ALL: [Self; 4] =
+        [Self::of(false, false), Self::of(true, false), Self::of(false, true), Self::of(true, true)];
+
+    const fn of(area_lights: bool, shadowed_sky: bool) -> Self {
+        Self { area_lights, shadowed_sky }
+    }
 }
 
 impl Gather {
@@ -17,7 +34,12 @@ impl Gather {
         let types = [UNIFORM, READ, READ, READ, READ, READ, WRITE, WRITE, WRITE, DEPTH_MAPS];
         let layout = gpu::layout(device, "gather", wgpu::ShaderStages::COMPUTE, &types);
         let module = gpu::module(device, translume_shaders::GATHER);
-        Self { irradiance: gpu::compute_pipeline(device, &layout, &module, "irradiance"), layout }
+        let irradiance = Kinds::ALL.map(|Kinds { area_lights, shadowed_sky }| {
+            let constants = [("AREA_LIGHTS", area_lights), ("SHADOWED_SKY", shadowed_sky)];
+            let constants = constants.map(|(name, on)| (name, f64::from(u8::from(on))));
+            gpu::specialised_pipeline(device, &layout, &module, "irradiance", &constants)
+        });
+        Self { irradiance, layout }
     }
 
     /// `visible` where some light of the sky is shadowed.
@@ -44,8 +66,10 @@ impl Gather {
         gpu::bind(device, "gather", &self.layout, &resources)
     }
 
-    pub fn encode(&self, pass: &mut Pass<'_>, group: &wgpu::BindGroup, texels: u32) {
-        pass.set_pipeline(&self.irradiance);
+    pub fn encode(&self, pass: &mut Pass<'_>, group: &wgpu::BindGroup, kinds: Kinds, texels: u32) {
+        for (pipeline, _) in self.irradiance.iter().zip(Kinds::ALL).filter(|(_, of)| *of == kinds) {
+            pass.set_pipeline(pipeline);
+        }
         pass.set_bind_group(group, &[]);
         pass.dispatch(texels);
     }
