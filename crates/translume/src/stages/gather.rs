@@ -39,7 +39,7 @@ impl Gather {
             let constants = constants.map(|(name, on)| (name, f64::from(u8::from(on))));
             gpu::specialised_pipeline(device, &layout, &module, "irradiance", &constants)
         });
-        Self { irradiance, layout }
+        Self { layout, irradiance }
     }
 
     /// `visible` where some light of the sky is shadowed.
