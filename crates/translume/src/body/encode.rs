@@ -34,7 +34,7 @@ impl Body {
 
     /// As [`encode`](Self::encode), and lets the host draw its casters into every depth map: `casters` gets the pass, whose viewport is the
     /// map's, and the [`ShadowView::index`]. The pass has a `Depth32Float` attachment of one sample and no colour; nearer is greater. Say in
-    /// [`Frame::casters`] where they are.
+    /// [`Frame::casters`](crate::Frame::casters) where they are.
     pub fn encode_with(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
