@@ -43,14 +43,14 @@ pub enum SceneLight {
     },
     ConstantEnv {
         radiance: [f32; 3],
-        #[serde(default)]
+        #[serde(default = "lit")]
         shadow: bool,
     },
     CapEnv {
         radiance: [f32; 3],
         axis: [f32; 3],
         half_angle_deg: f32,
-        #[serde(default)]
+        #[serde(default = "lit")]
         shadow: bool,
     },
     Environment(Environment),
