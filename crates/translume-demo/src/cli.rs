@@ -80,7 +80,7 @@ pub struct Render {
     #[arg(long, value_name = "N", default_value_t = 2048)]
     pub shadow: u32,
     /// Directions in which the body's own shadow on sky light is known, a multiple of 8 up to 256.
-    #[arg(long, value_name = "N", default_value_t = 128)]
+    #[arg(long, value_name = "N", default_value_t = 256)]
     pub directions: u32,
     /// Samples per pixel along each axis. By default 2 for a PNG, and 1, the pixel's centre, for an EXR.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=8))]

@@ -190,7 +190,7 @@ mod tests {
     }
 
     #[test]
-    fn skies_cast_shadows_on_request() {
+    fn skies_are_shadowed_unless_told_otherwise() {
         let shadow = |text: &str| {
             let light: SceneLight = serde_json::from_str(text).unwrap();
             match light.lights(0.0).unwrap()[..] {
@@ -198,10 +198,10 @@ mod tests {
                 ref other => panic!("{other:?}"),
             }
         };
-        assert!(!shadow(r#"{ "type": "constant_env", "radiance": [1, 1, 1] }"#));
-        assert!(shadow(r#"{ "type": "constant_env", "radiance": [1, 1, 1], "shadow": true }"#));
+        assert!(shadow(r#"{ "type": "constant_env", "radiance": [1, 1, 1] }"#));
+        assert!(!shadow(r#"{ "type": "constant_env", "radiance": [1, 1, 1], "shadow": false }"#));
         let cap = r#"{ "type": "cap_env", "radiance": [1, 1, 1], "axis": [0, 1, 0], "half_angle_deg": 9"#;
-        assert!(!shadow(&format!("{cap} }}")) && shadow(&format!(r#"{cap}, "shadow": true }}"#)));
+        assert!(shadow(&format!("{cap} }}")) && !shadow(&format!(r#"{cap}, "shadow": false }}"#)));
     }
 
     #[test]
