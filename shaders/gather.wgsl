@@ -54,7 +54,7 @@ fn clamped(w: vec2f) -> vec2f {
 
 // seen: share of the shadowed sky
 fn entering(receiver: Receiver, seen: vec3f) -> vec3f {
-    var light = sky(receiver.normal, seen);
+    var light = sky(receiver, seen);
     for (var k = 0u; k < lighting.light_count; k++) {
         if AREA_LIGHTS && lighting.lights[k].kind >= RECTANGLE {
             light += area_light(k, receiver);
@@ -115,14 +115,33 @@ fn visibility(index: u32, emitter: u32, receiver: Receiver, to_light: vec3f) -> 
 }
 
 // Ambient lights and environments.
-fn sky(normal: vec3f, seen: vec3f) -> vec3f {
+fn sky(receiver: Receiver, seen: vec3f) -> vec3f {
+    let normal = receiver.normal;
     var open = environment_irradiance(lighting.open_sky, normal);
     var shadowed = environment_irradiance(lighting.shadowed_sky, normal);
     for (var k = 0u; k < lighting.ambient_count; k++) {
-        let light = ambient(k, normal);
+        var light = ambient(k, normal);
+        if AREA_LIGHTS && lighting.ambients[k].emitter_count > 0u { light *= cone_share(k, receiver); }
         if lighting.ambients[k].shadow == 1u { shadowed += light; } else { open += light; }
     }
     return open + shadowed * seen;
+}
+
+// The share of a narrow cone's light that the body lets through, by directions of its own.
+fn cone_share(index: u32, receiver: Receiver) -> f32 {
+    var lit = 0.0;
+    var all = 0.0;
+    for (var k = 0u; k < lighting.ambients[index].emitter_count; k++) {
+        let direction = lighting.emitters[lighting.ambients[index].first_emitter + k].xyz;
+        let cosine = dot(receiver.normal, direction);
+        if cosine > 0.0 {
+            let light = cosine * fresnel_transmittance(lighting.eta, cosine);
+            let view = lighting.views[lighting.ambients[index].first_view + k];
+            lit += light * lit_share(view, receiver, direction, (lighting.filter_side + 1u) / 2u);
+            all += light;
+        }
+    }
+    return select(lit / all, 1.0, all <= 0.0);
 }
 
 // The share of the sky's light that the body lets through, by the directions along which that is known.

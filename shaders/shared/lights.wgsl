@@ -40,10 +40,15 @@ struct Ambient {
     // Cosine of the cone's half angle.
     cone_cosine: f32,
     axis: vec3f,
-    // 1 where the body shadows it.
+    // 1 where it is shadowed by what is known of the sky.
     shadow: u32,
     // Irradiance inside the surface for unit radiance, over the cosine between normal and axis; 33 values.
     table: array<vec4f, 9>,
+    // A narrow cone is shadowed along directions of its own, a view each.
+    first_view: u32,
+    first_emitter: u32,
+    emitter_count: u32,
+    padding: u32,
 }
 
 struct ShadowView {
@@ -84,7 +89,7 @@ struct Gather {
     shadowed_sky: array<vec4f, 9>,
     lights: array<Light, 64>,
     ambients: array<Ambient, 8>,
-    // Position, mm, and area, mm².
+    // Points of area lights: position, mm, and area, mm². Directions of narrow cones: unit vector and solid angle.
     emitters: array<vec4f, 256>,
     views: array<ShadowView, 256>,
     sky: array<Sky, 256>,

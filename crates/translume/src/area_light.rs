@@ -1,5 +1,6 @@
 //! Lights with an area, and the points on them that stand for it.
 
+use crate::{AmbientLight, ShadowOptions};
 use glam::{Mat3, Vec3, Vec4};
 
 /// A rectangle that shines from one side, as a window or a softbox does.
@@ -51,6 +52,35 @@ impl Default for SphereLight {
     }
 }
 
+impl AmbientLight {
+    /// Whether it is shadowed along directions of its own rather than along those of the whole sky: where these are more.
+    pub(crate) fn has_own_points(&self, options: &ShadowOptions) -> bool {
+        let share = 0.5 * (1.0 - self.half_angle.min(std::f32::consts::PI).cos());
+        options.directions as f32 * share < options.area_points as f32
+    }
+
+    /// `count` unit vectors that share its solid angle, and the share of each, sr.
+    pub(crate) fn emitters(&self, count: u32) -> Vec<Vec4> {
+        let lowest = self.half_angle.cos();
+        let solid_angle = std::f32::consts::TAU * (1.0 - lowest) / count as f32;
+        cap(self.axis.into(), lowest, count).map(|direction| direction.extend(solid_angle)).collect()
+    }
+}
+
+/// `count` unit vectors evenly spread over the cap around an axis down to this cosine.
+fn cap(axis: Vec3, lowest: f32, count: u32) -> impl Iterator<Item = Vec3> {
+    let axis = axis.normalize_or(Vec3::Y);
+    let right = axis.any_orthonormal_vector();
+    let turn = Mat3::from_cols(right, axis.cross(right), axis);
+    (0..count).map(move |k| {
+        let [u, v] = lattice(k, count);
+        let height = 1.0 - u * (1.0 - lowest);
+        let (sine, cosine) = (v * std::f32::consts::TAU).sin_cos();
+        let ring = (1.0 - height * height).max(0.0).sqrt();
+        turn * Vec3::new(ring * cosine, ring * sine, height)
+    })
+}
+
 /// Point `k` of a lattice of `count` that spreads evenly over the unit square: no two share a row or a column, so that a straight edge
 /// sweeps over them one by one. Source: the Fibonacci lattice, with the golden section for any count.
 fn lattice(k: u32, count: u32) -> [f32; 2] {
@@ -81,18 +111,8 @@ impl SphereLight {
         let to_body = middle - center;
         // A point of the sphere sees what lies above its tangent plane.
         let lowest = ((radius - reach) / to_body.length().max(f32::MIN_POSITIVE)).clamp(-1.0, 1.0);
-        let axis = to_body.normalize_or(Vec3::Y);
-        let right = axis.any_orthonormal_vector();
-        let turn = Mat3::from_cols(right, axis.cross(right), axis);
         let area = std::f32::consts::TAU * radius * radius * (1.0 - lowest) / count as f32;
-        let point = |k| {
-            let [u, v] = lattice(k, count);
-            let height = 1.0 - u * (1.0 - lowest);
-            let (sine, cosine) = (v * std::f32::consts::TAU).sin_cos();
-            let ring = (1.0 - height * height).max(0.0).sqrt();
-            (center + turn * Vec3::new(ring * cosine, ring * sine, height) * radius).extend(area)
-        };
-        (0..count).map(point).collect()
+        cap(to_body, lowest, count).map(|outwards| (center + outwards * radius).extend(area)).collect()
     }
 }
 

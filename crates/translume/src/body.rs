@@ -156,7 +156,7 @@ impl Body {
             frame::validate_irradiance(buffer, self.extent.texels)?;
         }
         let casters = frame.casters.map(|c| frame::caster_corners(&c, self.mm_per_unit)).transpose()?;
-        let has_sky = lighting::has_shadowed_sky(lights);
+        let has_sky = lighting::has_shadowed_sky(lights, &self.shadows);
         if has_sky {
             self.check_sky()?;
         }
@@ -209,7 +209,7 @@ impl Body {
         }
         self.host_irradiance = host_irradiance.cloned();
         self.casters = frame.casters;
-        self.kinds = lighting::kinds(lights);
+        self.kinds = lighting::kinds(lights, &self.shadows);
         self.model = model;
         self.lights.clear();
         self.lights.extend_from_slice(lights);

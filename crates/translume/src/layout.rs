@@ -73,6 +73,10 @@ pub(crate) struct AmbientLayout {
     pub axis: [f32; 3],
     pub shadow: u32,
     pub table: [[f32; 4]; 9],
+    pub first_view: u32,
+    pub first_emitter: u32,
+    pub emitter_count: u32,
+    pub padding: u32,
 }
 
 #[repr(C)]
@@ -283,7 +287,12 @@ mod tests {
                 emitter_count
             ]
         );
-        check!(GATHER, "Ambient", AmbientLayout, [radiance, cone_cosine, axis, shadow, table]);
+        check!(
+            GATHER,
+            "Ambient",
+            AmbientLayout,
+            [radiance, cone_cosine, axis, shadow, table, first_view, first_emitter, emitter_count]
+        );
         check!(GATHER, "ShadowView", ShadowViewLayout, [matrix, tile, layer, texel, perspective]);
         check!(GATHER, "Sky", SkyLayout, [direction, radiance]);
         check!(VISIBILITY, "Direction", DirectionLayout, [column, row, depth, to_sky, texel]);

@@ -30,19 +30,23 @@ pub(crate) struct Gathering {
     pub owners: Vec<usize>,
 }
 
-/// Whether the body's shadow on sky light matters.
-pub(crate) fn has_shadowed_sky(lights: &[Light]) -> bool {
+/// Whether some light is shadowed by what is known of the sky.
+pub(crate) fn has_shadowed_sky(lights: &[Light], options: &ShadowOptions) -> bool {
     lights.iter().any(|light| match light {
-        Light::Ambient(light) => light.shadow,
+        Light::Ambient(light) => light.shadow && !light.has_own_points(options),
         Light::Environment(light) => light.shadow,
         _ => false,
     })
 }
 
 /// What the gather's pipeline has to contain.
-pub(crate) fn kinds(lights: &[Light]) -> Kinds {
-    let area = |light: &Light| matches!(light, Light::Rectangle(_) | Light::Sphere(_));
-    Kinds { area_lights: lights.iter().any(area), shadowed_sky: has_shadowed_sky(lights) }
+pub(crate) fn kinds(lights: &[Light], options: &ShadowOptions) -> Kinds {
+    let area = |light: &Light| match light {
+        Light::Rectangle(_) | Light::Sphere(_) => true,
+        Light::Ambient(light) => light.shadow && light.has_own_points(options),
+        _ => false,
+    };
+    Kinds { area_lights: lights.iter().any(area), shadowed_sky: has_shadowed_sky(lights, options) }
 }
 
 pub(crate) fn gather(lights: &[Light], body: &GatherBody<'_>) -> Result<Gathering, Error> {
@@ -54,26 +58,27 @@ pub(crate) fn gather(lights: &[Light], body: &GatherBody<'_>) -> Result<Gatherin
     layout.filter_side = body.shadows.filter;
     let (mut views, mut owners, mut emitters) = (Vec::new(), Vec::new(), 0);
     for (index, light) in lights.iter().enumerate() {
+        let own = shadow_view::light_views(light, body.mm_per_unit, body.subject, body.shadows);
+        check_room(emitters + own.emitters.len(), views.len() + own.views.len())?;
+        for (slot, point) in layout.emitters[emitters..].iter_mut().zip(&own.emitters) {
+            *slot = point.to_array();
+        }
         match light {
             Light::Ambient(ambient) => {
-                layout.ambients[layout.ambient_count as usize] = ambient_layout(ambient, body.eta);
+                let slot = &mut layout.ambients[layout.ambient_count as usize];
+                *slot = ambient_layout(ambient, body.eta, &own, views.len(), emitters);
                 layout.ambient_count += 1;
             }
             Light::Environment(_) => {}
             _ => {
-                let own = shadow_view::light_views(light, body.mm_per_unit, body.subject, body.shadows);
-                check_room(emitters + own.emitters.len(), views.len() + own.views.len())?;
-                for (slot, point) in layout.emitters[emitters..].iter_mut().zip(&own.emitters) {
-                    *slot = point.to_array();
-                }
                 layout.lights[layout.light_count as usize] =
                     light_layout(light, body.mm_per_unit, &own, views.len(), emitters);
                 layout.light_count += 1;
-                emitters += own.emitters.len();
-                owners.extend(own.views.iter().map(|_| index));
-                views.extend(own.views);
             }
         }
+        emitters += own.emitters.len();
+        owners.extend(own.views.iter().map(|_| index));
+        views.extend(own.views);
     }
     let resolution = body.shadows.resolution;
     let layers = shadow_view::pack(&mut views, resolution);
@@ -165,7 +170,13 @@ fn light_layout(
     layout
 }
 
-fn ambient_layout(ambient: &AmbientLight, eta: f32) -> AmbientLayout {
+fn ambient_layout(
+    ambient: &AmbientLight,
+    eta: f32,
+    own: &LightViews,
+    first_view: usize,
+    first_emitter: usize,
+) -> AmbientLayout {
     let values: [f32; 33] = light::ambient_table(ambient.half_angle, eta);
     let mut table = [[0.0; 4]; 9];
     for (k, value) in values.into_iter().enumerate() {
@@ -176,8 +187,12 @@ fn ambient_layout(ambient: &AmbientLight, eta: f32) -> AmbientLayout {
         radiance: ambient.radiance,
         cone_cosine: ambient.half_angle.cos(),
         axis,
-        shadow: u32::from(ambient.shadow),
+        shadow: u32::from(ambient.shadow && own.emitters.is_empty()),
         table,
+        first_view: first_view as u32,
+        first_emitter: first_emitter as u32,
+        emitter_count: own.emitters.len() as u32,
+        padding: 0,
     }
 }
 
@@ -192,7 +207,7 @@ fn sky_layout(layout: &mut GatherLayout, lights: &[Light], body: &GatherBody<'_>
             }
         }
     }
-    if !has_shadowed_sky(lights) {
+    if !has_shadowed_sky(lights, body.shadows) {
         return;
     }
     layout.direction_count = body.directions.len() as u32;
@@ -200,7 +215,7 @@ fn sky_layout(layout: &mut GatherLayout, lights: &[Light], body: &GatherBody<'_>
         let mut radiance = Vec3::ZERO;
         for light in lights {
             radiance += match light {
-                Light::Ambient(light) if light.shadow => {
+                Light::Ambient(light) if light.shadow && !light.has_own_points(body.shadows) => {
                     cone_radiance(light, *direction, body.directions.len())
                 }
                 Light::Environment(light) if light.shadow => environment_radiance(light, *direction),

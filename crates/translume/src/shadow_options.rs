@@ -10,7 +10,7 @@ pub struct ShadowOptions {
     pub resolution: u32,
     /// Comparisons with a depth map along each side of a texel's square, 1..=8; at least two are made.
     pub filter: u32,
-    /// Points of an area light that cast a shadow each, 1..=64.
+    /// Points of an area light, or of a cone of the sky that holds fewer `directions`, that cast a shadow each, 1..=64.
     pub area_points: u32,
     /// Directions from which the body's own shadow on sky light is known, a multiple of 8 from 8 to 256.
     pub directions: u32,

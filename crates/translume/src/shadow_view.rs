@@ -108,8 +108,21 @@ pub(crate) fn light_views(
             let emitters = light.emitters(scale, options.area_points, middle, reach);
             area_views(emitters, light.shadow, subject, options)
         }
+        Light::Ambient(light) if light.shadow && light.has_own_points(options) => {
+            let emitters = light.emitters(options.area_points);
+            let shift = shared_shift(emitters.len());
+            let directions = emitters.iter().map(|emitter| emitter.truncate());
+            let views =
+                directions.map(|to_sky| directional_view(to_sky, subject, resolution, shift)).collect();
+            LightViews { emitters, views, views_per_emitter: 1 }
+        }
         _ => LightViews::default(),
     }
+}
+
+/// The largest squares of which this many share a layer.
+fn shared_shift(count: usize) -> u32 {
+    (0..MAX_SHIFT).find(|shift| count <= 1 << (2 * shift)).unwrap_or(MAX_SHIFT)
 }
 
 /// All the points of an area light together take as much room as one point light.
@@ -122,7 +135,7 @@ fn area_views(
     if !shadow {
         return LightViews { emitters, ..Default::default() };
     }
-    let shift = (0..MAX_SHIFT).find(|shift| emitters.len() <= 1 << (2 * shift)).unwrap_or(MAX_SHIFT);
+    let shift = shared_shift(emitters.len());
     let points = emitters.iter().map(|emitter| emitter.truncate());
     let one_each = points.clone().all(|point| is_narrow(point, subject));
     let views = points.flat_map(|point| {

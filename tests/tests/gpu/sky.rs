@@ -189,6 +189,23 @@ fn a_convex_body_is_not_dark() {
     notices(occlusion(&creature()));
 }
 
+/// A cone of 34°, which 64 directions of the whole sky would see along five or six: it has sixteen of its own.
+#[test]
+fn a_narrow_cone_casts_a_soft_shadow() {
+    let cone = |half_angle, shadow| {
+        Light::Ambient(AmbientLight { axis: [0.5, 1.0, 0.2], half_angle, shadow, ..Default::default() })
+    };
+    let twin = twin_of(translume_tests::light(&cone(0.6, true), 1.0), [2, 12]);
+    let check = |light| {
+        let error = rmse_by_area(&lit(&mut body(&creature(), 64), &[light]), &twin);
+        // Sixteen hard shadows in place of a soft one.
+        at_most("sky: narrow cone, relative RMSE", error, 0.05)
+    };
+    holds(check(cone(0.6, true)));
+    notices(check(cone(0.6, false)));
+    notices(check(cone(0.7, true)));
+}
+
 #[test]
 fn narrow_cones_stay_bounded() {
     let mut body = body(&creature(), 64);
