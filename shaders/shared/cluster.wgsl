@@ -14,6 +14,19 @@ struct Cluster {
     area: f32,
 }
 
+// The same texels seen as one receiver, each counting alike, lit or not. Lengths in mm.
+struct Receiver {
+    // Mean of the texels' positions.
+    centre: vec3f,
+    // Rms distance of the texels from it.
+    spread: f32,
+    // No texel is further from the centre.
+    radius: f32,
+    texels: u32,
+    padding0: u32,
+    padding1: u32,
+}
+
 // Rms radius of a disc of this area.
 fn disc_spread(area: f32) -> f32 {
     return sqrt(area * 0.15915494);

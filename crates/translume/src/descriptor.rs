@@ -17,6 +17,9 @@ pub struct BodyDescriptor<'a> {
     pub profile: Profile,
     /// How the scatter sum is evaluated.
     pub method: Method,
+    /// Memory of [`Method::Dual`] for open sources, in entries of four bytes per texel. What finds no room takes longer, but is not lost
+    /// ([`Outputs::lists`](crate::Outputs::lists) counts it).
+    pub list_entries: u32,
     /// Millimetres per world unit: 1000 for an engine that counts in metres. Finite, > 0.
     pub mm_per_unit: f32,
     /// Whether each triangle keeps its own normal instead of the smooth vertex normals.
@@ -35,6 +38,7 @@ impl<'a> BodyDescriptor<'a> {
             medium: Medium::default(),
             profile: Profile::default(),
             method: Method::default(),
+            list_entries: 12,
             mm_per_unit: 1000.0,
             flat_normals: false,
             shadows: ShadowOptions::default(),

@@ -152,6 +152,46 @@ pub(crate) struct LevelLayout {
     pub node_offset: u32,
 }
 
+/// A group of texels seen as one receiver.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub(crate) struct ReceiverLayout {
+    pub centre: [f32; 3],
+    pub spread: f32,
+    pub radius: f32,
+    pub texels: u32,
+    pub padding: [u32; 2],
+}
+
+/// Radiant exitance around a point; never written by the host.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub(crate) struct ExpansionLayout {
+    pub value: [f32; 3],
+    pub evaluations: f32,
+    pub x: [f32; 3],
+    pub first_chunk: u32,
+    pub y: [f32; 3],
+    pub list_length: u32,
+    pub z: [f32; 4],
+    pub hessian: [[f32; 4]; 6],
+}
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub(crate) struct DualLayout {
+    pub table: KernelTableLayout,
+    pub texel_count: u32,
+    pub level: u32,
+    pub start_level: u32,
+    pub top_level: u32,
+    pub theta_squared: f32,
+    pub leaf_theta_squared: f32,
+    pub z_r_squared: f32,
+    pub chunk_count: u32,
+    pub offsets: [[u32; 4]; 4],
+}
+
 /// A group of texels seen as one source. Lengths in mm. Mirrors `Cluster` in `shared/cluster.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
@@ -309,6 +349,25 @@ mod tests {
             "Scatter",
             ScatterLayout,
             [table, texel_count, first_source, source_count, top_level, theta_squared, z_r_squared, offsets]
+        );
+        check!(DUAL, "Receiver", ReceiverLayout, [centre, spread, radius, texels]);
+        check!(DUAL, "Expansion", ExpansionLayout, [value, evaluations, x, first_chunk, y, list_length, z]);
+        check!(
+            DUAL,
+            "Dual",
+            DualLayout,
+            [
+                table,
+                texel_count,
+                level,
+                start_level,
+                top_level,
+                theta_squared,
+                leaf_theta_squared,
+                z_r_squared,
+                chunk_count,
+                offsets
+            ]
         );
         let (members, span) = naga_layout(translume_shaders::COMPOSITE.source, "Composite");
         assert_eq!(members[1], ("eye".to_owned(), offset_of!(CompositeLayout, eye) as u32));

@@ -66,7 +66,7 @@ impl Tree {
 
 impl ClusterStage {
     pub fn new(device: &wgpu::Device) -> Self {
-        let types = [UNIFORM_ARRAY, READ, READ, READ, WRITE];
+        let types = [UNIFORM_ARRAY, READ, READ, READ, WRITE, WRITE];
         let layout = gpu::layout(device, "cluster", wgpu::ShaderStages::COMPUTE, &types);
         let module = gpu::module(device, translume_shaders::CLUSTER);
         Self {
@@ -83,6 +83,7 @@ impl ClusterStage {
             buffers.texel_normals.as_entire_binding(),
             buffers.irradiance.as_entire_binding(),
             buffers.clusters.as_entire_binding(),
+            buffers.receivers.as_entire_binding(),
         ];
         gpu::bind(device, "cluster", &self.layout, &resources)
     }

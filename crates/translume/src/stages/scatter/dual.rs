@@ -1,0 +1,142 @@
+//! Dual: the scatter sum with groups of texels at both ends, level by level from the coarsest receivers to the texels.
+//!
+//! reads  texel positions, normals, irradiance, clusters, receivers, kernel table      writes  exitance per texel, linear RGB
+//! judge  `Method::AllPairs` on the same adapter                                        WGSL    `dual.wgsl`
+
+use crate::Error;
+use crate::buffers::Buffers;
+use crate::gpu::{self, FLOAT_TEXTURE, Pass, READ, UNIFORM_ARRAY, UNIFORM_STRIDE, WRITE};
+use crate::layout::{DualLayout, ExpansionLayout, ScatterLayout};
+use crate::stages::cluster::Tree;
+
+/// The coarsest level of receivers has at least this many nodes: fewer would not share enough to be worth a dispatch.
+const LEAST_RECEIVERS: u32 = 64;
+/// Opening angle of single texels over that of groups: they test the source's size alone.
+const LEAF_THETA: f32 = 0.64;
+/// Words of a chunk of a list, and of what stands before the first; as in `shared/lists.wgsl`.
+const CHUNK_WORDS: u32 = 8;
+const LISTS_HEADER: u64 = 16;
+
+pub(crate) struct Dual {
+    layout: wgpu::BindGroupLayout,
+    start: wgpu::ComputePipeline,
+    inner: wgpu::ComputePipeline,
+    leaf: wgpu::ComputePipeline,
+}
+
+/// What the dual scatter of one body remembers during a frame.
+pub(crate) struct DualMemory {
+    uniforms: wgpu::Buffer,
+    pub lists: wgpu::Buffer,
+    group: wgpu::BindGroup,
+    start_level: u32,
+    chunks: u32,
+}
+
+/// Level of the coarsest receivers; 0 where texels are too few for groups of them.
+fn start_level(tree: &Tree) -> u32 {
+    tree.counts.iter().rposition(|count| *count >= LEAST_RECEIVERS).unwrap_or(0) as u32
+}
+
+fn chunks(texels: u32, entries_per_texel: u32) -> u32 {
+    // One at least, which is the root's.
+    texels.saturating_mul(entries_per_texel) / CHUNK_WORDS + 1
+}
+
+/// Whether the device can hold what the dual scatter remembers.
+pub(crate) fn check(tree: &Tree, entries_per_texel: u32, limits: &wgpu::Limits) -> Result<(), Error> {
+    let lists = LISTS_HEADER + u64::from(chunks(tree.counts[0], entries_per_texel) * CHUNK_WORDS) * 4;
+    let expansions = u64::from(tree.clusters()) * size_of::<ExpansionLayout>() as u64;
+    let required = lists.max(expansions);
+    let actual = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
+    if required <= actual {
+        return Ok(());
+    }
+    Err(Error::Limit {
+        what: "the dual scatter".to_owned(),
+        limit: "max_storage_buffer_binding_size",
+        required,
+        actual,
+        remedy: "use a smaller atlas or `Method::Tree`, or create the device with higher limits",
+    })
+}
+
+impl Dual {
+    pub fn new(device: &wgpu::Device) -> Self {
+        let types = [UNIFORM_ARRAY, READ, READ, READ, READ, WRITE, FLOAT_TEXTURE, READ, WRITE, WRITE];
+        let layout = gpu::layout(device, "dual", wgpu::ShaderStages::COMPUTE, &types);
+        let module = gpu::module(device, translume_shaders::DUAL);
+        Self {
+            start: gpu::compute_pipeline(device, &layout, &module, "start"),
+            inner: gpu::compute_pipeline(device, &layout, &module, "inner"),
+            leaf: gpu::compute_pipeline(device, &layout, &module, "leaf"),
+            layout,
+        }
+    }
+
+    /// Room for a body's lists and expansions.
+    pub fn memory(
+        &self,
+        device: &wgpu::Device,
+        buffers: &Buffers,
+        kernel_table: &wgpu::TextureView,
+        tree: &Tree,
+        entries_per_texel: u32,
+    ) -> DualMemory {
+        let start_level = start_level(tree);
+        let chunks = chunks(tree.counts[0], entries_per_texel);
+        let uniforms = gpu::uniform_buffer(device, "dual", UNIFORM_STRIDE * u64::from(start_level + 1));
+        let size = u64::from(tree.clusters().max(1)) * size_of::<ExpansionLayout>() as u64;
+        let expansions = gpu::buffer(device, "expansions", size);
+        let lists = gpu::buffer(device, "lists", LISTS_HEADER + u64::from(chunks * CHUNK_WORDS) * 4);
+        let resources = [
+            gpu::uniform_slot::<DualLayout>(&uniforms),
+            buffers.texel_positions.as_entire_binding(),
+            buffers.texel_normals.as_entire_binding(),
+            buffers.irradiance.as_entire_binding(),
+            buffers.clusters.as_entire_binding(),
+            buffers.exitance.as_entire_binding(),
+            wgpu::BindingResource::TextureView(kernel_table),
+            buffers.receivers.as_entire_binding(),
+            expansions.as_entire_binding(),
+            lists.as_entire_binding(),
+        ];
+        let group = gpu::bind(device, "dual", &self.layout, &resources);
+        DualMemory { uniforms, lists, group, start_level, chunks }
+    }
+
+    pub fn encode(&self, pass: &mut Pass<'_>, memory: &DualMemory, tree: &Tree) {
+        pass.set_pipeline(&self.start);
+        pass.set_bind_group(&memory.group, &[0]);
+        pass.dispatch_workgroups(1, 1);
+        for level in (0..=memory.start_level).rev() {
+            pass.set_pipeline(if level > 0 { &self.inner } else { &self.leaf });
+            pass.set_bind_group(&memory.group, &[level * UNIFORM_STRIDE as u32]);
+            pass.dispatch(tree.counts[level as usize]);
+        }
+    }
+}
+
+impl DualMemory {
+    /// One uniform per level of receivers, ready for dynamic offsets.
+    pub fn write(&self, queue: &wgpu::Queue, scatter: &ScatterLayout, theta: f32) {
+        let stride = UNIFORM_STRIDE as usize;
+        let mut bytes = vec![0; stride * (self.start_level as usize + 1)];
+        for (level, slot) in (0..).zip(bytes.chunks_mut(stride)) {
+            let uniform = DualLayout {
+                table: scatter.table,
+                texel_count: scatter.texel_count,
+                level,
+                start_level: self.start_level,
+                top_level: scatter.top_level,
+                theta_squared: theta * theta,
+                leaf_theta_squared: (LEAF_THETA * theta).powi(2),
+                z_r_squared: scatter.z_r_squared,
+                chunk_count: self.chunks,
+                offsets: scatter.offsets,
+            };
+            slot[..size_of::<DualLayout>()].copy_from_slice(bytemuck::bytes_of(&uniform));
+        }
+        queue.write_buffer(&self.uniforms, 0, &bytes);
+    }
+}
