@@ -7,6 +7,11 @@ struct Level {
     // Where the children and the nodes of this level begin in `clusters`.
     child_offset: u32,
     node_offset: u32,
+    // Where the sources of this level, and its receivers, begin in `bounds`.
+    source_offset: u32,
+    receiver_offset: u32,
+    padding0: u32,
+    padding1: u32,
 }
 
 @group(0) @binding(0) var<uniform> level: Level;
@@ -15,6 +20,8 @@ struct Level {
 @group(0) @binding(3) var<storage, read> texel_irradiance: array<vec4f>;
 @group(0) @binding(4) var<storage, read_write> clusters: array<Cluster>;
 @group(0) @binding(5) var<storage, read_write> receivers: array<Receiver>;
+// Centres and sizes: first of all sources, from the texels up, dark ones with size 0; then of all receivers above the texels.
+@group(0) @binding(6) var<storage, read_write> bounds: array<vec4f>;
 
 fn texel_cluster(index: u32) -> Cluster {
     let place = texel_positions[index];
@@ -31,10 +38,10 @@ fn from_texels(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) gro
         if node * 4u + k < level.child_count {
             children[k] = texel_cluster(node * 4u + k);
             receiving[k] = Receiver(children[k].centroid, 0.0, 0.0, 1u, 0u, 0u);
+            bounds[node * 4u + k] = vec4f(children[k].centroid, select(0.0, NO_SIZE, any(children[k].power > vec3f(0.0))));
         }
     }
-    clusters[level.node_offset + node] = merge(&children, min(level.child_count - node * 4u, 4u));
-    receivers[level.node_offset + node] = merge_receivers(&receiving);
+    store(node, merge(&children, min(level.child_count - node * 4u, 4u)), merge_receivers(&receiving));
 }
 
 @compute @workgroup_size(64)
@@ -49,8 +56,15 @@ fn from_clusters(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) g
             receiving[k] = receivers[level.child_offset + node * 4u + k];
         }
     }
-    clusters[level.node_offset + node] = merge(&children, min(level.child_count - node * 4u, 4u));
-    receivers[level.node_offset + node] = merge_receivers(&receiving);
+    store(node, merge(&children, min(level.child_count - node * 4u, 4u)), merge_receivers(&receiving));
+}
+
+fn store(node: u32, cluster: Cluster, receiver: Receiver) {
+    clusters[level.node_offset + node] = cluster;
+    receivers[level.node_offset + node] = receiver;
+    let size = select(0.0, max(size_of(cluster.spread, cluster.radius), NO_SIZE), any(cluster.power > vec3f(0.0)));
+    bounds[level.source_offset + node] = vec4f(cluster.centroid, size);
+    bounds[level.receiver_offset + node] = vec4f(receiver.centre, size_of(receiver.spread, receiver.radius));
 }
 
 // Children weigh by their power; where none has any, by area; where none has that either, equally.

@@ -16,10 +16,17 @@ struct Dual {
     leaf_theta_squared: f32,
     // Square of the shortest mean free path of the three channels, mm².
     z_r_squared: f32,
-    // Chunks there are in `lists`.
-    chunk_count: u32,
-    // Where each level begins in `clusters`, `receivers` and `expansions`; level 0 is the texels.
+    // Words there are in `lists`.
+    capacity: u32,
+    // Where receivers begin in `bounds`.
+    first_receiver: u32,
+    padding0: u32,
+    padding1: u32,
+    padding2: u32,
+    // Where each level above the texels begins in `clusters`, in `expansions`, and among the receivers.
     offsets: array<vec4u, 4>,
+    // Where each level begins among the sources in `bounds`.
+    sources: array<vec4u, 4>,
 }
 
 @group(0) @binding(0) var<uniform> dual: Dual;
@@ -29,7 +36,7 @@ struct Dual {
 @group(0) @binding(4) var<storage, read> clusters: array<Cluster>;
 @group(0) @binding(5) var<storage, read_write> exitance: array<vec4f>;
 @group(0) @binding(6) var kernel_table: texture_2d<f32>;
-@group(0) @binding(7) var<storage, read> receivers: array<Receiver>;
+@group(0) @binding(7) var<storage, read> bounds: array<vec4f>;
 @group(0) @binding(8) var<storage, read_write> expansions: array<Expansion>;
 @group(0) @binding(9) var<storage, read_write> lists: Lists;
 
@@ -37,24 +44,8 @@ struct Dual {
 // evaluates together.
 const BATCH: u32 = 16u;
 var<workgroup> accepted: array<u32, 1024>;
-
-// What a receiver sees of a source: how large it is, and how far.
-struct Sight {
-    size: f32,
-    distance_squared: f32,
-    dark: bool,
-}
-
-fn sight(level: u32, node: u32, receiver: vec3f) -> Sight {
-    if level == 0u {
-        let offset = receiver - texel_positions[node].xyz;
-        return Sight(0.0, dot(offset, offset), false);
-    }
-    let at = dual.offsets[level / 4u][level % 4u] + node;
-    let offset = receiver - clusters[at].centroid;
-    let size = max(1.6 * clusters[at].spread, 0.9 * clusters[at].radius);
-    return Sight(size, dot(offset, offset), all(clusters[at].power == vec3f(0.0)));
-}
+// Sources it leaves to its children, until they make a run.
+var<workgroup> left: array<u32, 960>;
 
 fn source(entry: u32, receiver: u32) -> Source {
     let level = packed_level(entry);
@@ -66,9 +57,10 @@ fn source(entry: u32, receiver: u32) -> Source {
 
 // A walk through the subtrees of a list's entries.
 struct Walk {
-    chunk: u32,
-    read: u32,
-    length: u32,
+    // Where the run begins that is read, and what is left of it.
+    run: u32,
+    unread: u32,
+    runs: u32,
     // Level of the entry whose subtree is walked, and where in it the walk is.
     top: u32,
     level: u32,
@@ -78,17 +70,21 @@ struct Walk {
 }
 
 fn walk(list: List) -> Walk {
-    return Walk(list.first_chunk, 0u, list.length, 0u, 0u, 0u, true);
+    let runs = (list.length + RUN - 1u) / RUN;
+    return Walk(list.first_run, list.length - RUN * (max(runs, 1u) - 1u), runs, 0u, 0u, 0u, true);
 }
 
 // Goes to the next entry if the last one is done; says whether there was any.
 fn arrive(w: ptr<function, Walk>) -> bool {
     if !(*w).done { return true; }
-    if (*w).read == (*w).length { return false; }
-    let place = (*w).read % CHUNK_ENTRIES;
-    if place == 0u && (*w).read > 0u { (*w).chunk = lists.words[(*w).chunk * CHUNK_WORDS + CHUNK_ENTRIES]; }
-    let entry = lists.words[(*w).chunk * CHUNK_WORDS + place];
-    (*w).read += 1u;
+    if (*w).unread == 0u {
+        if (*w).runs <= 1u { return false; }
+        (*w).run = lists.words[(*w).run];
+        (*w).runs -= 1u;
+        (*w).unread = RUN;
+    }
+    let entry = lists.words[(*w).run + (*w).unread];
+    (*w).unread -= 1u;
     (*w).top = packed_level(entry);
     (*w).level = (*w).top;
     (*w).node = packed_node(entry);
@@ -101,21 +97,25 @@ fn open(w: ptr<function, Walk>) {
     (*w).node *= 4u;
 }
 
+// To the next sibling, or where there is none to that of the nearest ancestor who has one. Levels are padded to four children.
 fn pass_by(w: ptr<function, Walk>) {
     (*w).node += 1u;
-    while (*w).level < (*w).top && ((*w).node % 4u == 0u || (*w).node >= level_count(dual.texel_count, (*w).level)) {
-        (*w).node = ((*w).node + 3u) / 4u;
-        (*w).level += 1u;
-    }
+    let up = min(countTrailingZeros((*w).node) / 2u, (*w).top - (*w).level);
+    (*w).node >>= 2u * up;
+    (*w).level += up;
     (*w).done = (*w).level == (*w).top;
 }
 
-// Chunk 0 is the list of the root alone.
+fn bound(level: u32, node: u32) -> vec4f {
+    return bounds[dual.sources[level / 4u][level % 4u] + node];
+}
+
+// Behind a word for the link, the list of the root alone.
 @compute @workgroup_size(1)
 fn start() {
-    atomicStore(&lists.next_chunk, 1u);
+    atomicStore(&lists.taken, 2u);
     atomicStore(&lists.overflows, 0u);
-    lists.words[0] = packed(dual.top_level, 0u);
+    lists.words[1] = packed(dual.top_level, 0u);
 }
 
 // What the parent left: its expansion about `place`, and its open sources.
@@ -124,32 +124,20 @@ fn inherited(node: u32, level: u32, place: vec3f) -> Expansion {
     e.list_length = 1u;
     if level < dual.start_level {
         let parent = dual.offsets[(level + 1u) / 4u][(level + 1u) % 4u] + node / 4u;
-        e = moved(expansions[parent], place - receivers[parent].centre);
+        e = moved(expansions[parent], place - bounds[dual.first_receiver + parent].xyz);
     }
     return e;
 }
 
-// A list while it is written.
-struct Pen {
-    list: List,
-    chunk: u32,
-    full: bool,
-}
-
-fn append(pen: ptr<function, Pen>, entry: u32) {
-    let place = (*pen).list.length % CHUNK_ENTRIES;
-    if place == 0u && !(*pen).full {
-        let fresh = atomicAdd(&lists.next_chunk, 1u);
-        (*pen).full = fresh >= dual.chunk_count;
-        if !(*pen).full {
-            if (*pen).list.length == 0u { (*pen).list.first_chunk = fresh; }
-            else { lists.words[(*pen).chunk * CHUNK_WORDS + CHUNK_ENTRIES] = fresh; }
-            (*pen).chunk = fresh;
-        }
-    }
-    if (*pen).full { return; }
-    lists.words[(*pen).chunk * CHUNK_WORDS + place] = entry;
-    (*pen).list.length += 1u;
+// Writes a run from the invocation's `left`; false where there is no room.
+fn write_run(list: ptr<function, List>, count: u32, local: u32) -> bool {
+    let run = atomicAdd(&lists.taken, count + 1u);
+    if run + count >= dual.capacity { return false; }
+    lists.words[run] = (*list).first_run;
+    for (var k = 0u; k < count; k++) { lists.words[run + 1u + k] = left[k * 64u + local]; }
+    (*list).first_run = run;
+    (*list).length += count;
+    return true;
 }
 
 // Receivers that are groups of texels.
@@ -158,38 +146,47 @@ fn inner(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: v
     let node = item_index(group, groups, local);
     if node >= level_count(dual.texel_count, dual.level) { return; }
     let own = dual.offsets[dual.level / 4u][dual.level % 4u] + node;
-    let receiver = receivers[own];
-    let size = max(1.6 * receiver.spread, 0.9 * receiver.radius);
-    let before = inherited(node, dual.level, receiver.centre);
+    let receiver = bounds[dual.first_receiver + own].xyz;
+    let size = bounds[dual.first_receiver + own].w;
+    let before = inherited(node, dual.level, receiver);
     var e = before;
-    var w = walk(List(e.first_chunk, e.list_length));
-    var pen = Pen(List(0u, 0u), 0u, false);
+    var w = walk(List(e.first_run, e.list_length));
+    var list = List(0u, 0u);
+    var left_count = 0u;
+    var room = true;
     var arrived = true;
     var evaluated = 0u;
-    while arrived && !pen.full {
+    while arrived && room {
         var count = 0u;
-        while count < BATCH && !pen.full {
+        while count < BATCH && left_count < RUN {
             arrived = arrive(&w);
             if !arrived { break; }
-            let seen = sight(w.level, w.node, receiver.centre);
-            let needed = seen.size + 1.5 * size;
-            let small = needed * needed < dual.theta_squared * (seen.distance_squared + dual.z_r_squared);
-            if !seen.dark {
+            let seen = bound(w.level, w.node);
+            let offset = receiver - seen.xyz;
+            let needed = seen.w + 1.5 * size;
+            let small = needed * needed < dual.theta_squared * (dot(offset, offset) + dual.z_r_squared);
+            if seen.w > size && !small {
+                open(&w);
+                continue;
+            }
+            if seen.w > 0.0 {
                 if small {
                     accepted[count * 64u + local] = packed(w.level, w.node);
                     count += 1u;
-                } else if w.level > 0u && seen.size > size {
-                    open(&w);
-                    continue;
                 } else {
-                    append(&pen, packed(w.level, w.node));
+                    left[left_count * 64u + local] = packed(w.level, w.node);
+                    left_count += 1u;
                 }
             }
             pass_by(&w);
         }
+        if left_count == RUN || !arrived && left_count > 0u {
+            room = write_run(&list, left_count, local);
+            left_count = 0u;
+        }
         for (var k = 0u; k < count; k++) {
             let s = source(accepted[k * 64u + local], 0xffffffffu);
-            let d = receiver.centre - s.place;
+            let d = receiver - s.place;
             let distance_squared = dot(d, d);
             let along = dot(d, s.normal);
             let facing = select(0.0, along * along / distance_squared, distance_squared > 0.0);
@@ -200,11 +197,12 @@ fn inner(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: v
         }
         evaluated += count;
     }
-    e.evaluations += f32(evaluated) / f32(receiver.texels);
-    e.first_chunk = pen.list.first_chunk;
-    e.list_length = pen.list.length;
+    let texels = min(1u << (2u * dual.level), dual.texel_count - (node << (2u * dual.level)));
+    e.evaluations += f32(evaluated) / f32(texels);
+    e.first_run = list.first_run;
+    e.list_length = list.length;
     // Without room for a list nothing is resolved here: the children take over what the parent left.
-    if pen.full {
+    if !room {
         atomicAdd(&lists.overflows, 1u);
         e = before;
     }
@@ -219,7 +217,7 @@ fn leaf(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: ve
     let receiver = texel_positions[index].xyz;
     let e = inherited(index, 0u, receiver);
     var sum = vec3f(0.0);
-    var w = walk(List(e.first_chunk, e.list_length));
+    var w = walk(List(e.first_run, e.list_length));
     var arrived = true;
     var evaluated = 0u;
     while arrived {
@@ -227,13 +225,13 @@ fn leaf(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: ve
         while count < BATCH {
             arrived = arrive(&w);
             if !arrived { break; }
-            let seen = sight(w.level, w.node, receiver);
-            let small = seen.size * seen.size < dual.leaf_theta_squared * (seen.distance_squared + dual.z_r_squared);
-            if !seen.dark {
-                if w.level > 0u && !small {
-                    open(&w);
-                    continue;
-                }
+            let seen = bound(w.level, w.node);
+            let offset = receiver - seen.xyz;
+            if w.level > 0u && seen.w * seen.w > dual.leaf_theta_squared * (dot(offset, offset) + dual.z_r_squared) {
+                open(&w);
+                continue;
+            }
+            if seen.w > 0.0 {
                 accepted[count * 64u + local] = packed(w.level, w.node);
                 count += 1u;
             }

@@ -27,6 +27,15 @@ struct Receiver {
     padding1: u32,
 }
 
+// Size of a lit texel, which has none: the least that is not 0.
+const NO_SIZE: f32 = 1e-30;
+
+// How far a group of texels reaches, for opening angles. The rms radius alone would forget the odd texel far out, the bound alone take every
+// group for as large as its worst.
+fn size_of(spread: f32, radius: f32) -> f32 {
+    return max(1.6 * spread, 0.9 * radius);
+}
+
 // Rms radius of a disc of this area.
 fn disc_spread(area: f32) -> f32 {
     return sqrt(area * 0.15915494);

@@ -6,7 +6,7 @@ struct Expansion {
     // Gradient.
     x: vec3f,
     // The sources still open, of this node or, where the memory for them was spent, of an ancestor.
-    first_chunk: u32,
+    first_run: u32,
     y: vec3f,
     list_length: u32,
     z: vec3f,

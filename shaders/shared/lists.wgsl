@@ -1,18 +1,19 @@
-// Lists of nodes of the tree in one memory: chains of chunks, whose last word is the index of the next chunk.
+// Lists of nodes of the tree, of any length, in one memory. A list is a chain of runs: the run written last comes first and may be short,
+// all others have RUN entries. In front of a run stands where the next one begins.
 struct Lists {
-    next_chunk: atomic<u32>,
-    // Nodes that found no memory for their list.
+    // Words taken, or that would have been.
+    taken: atomic<u32>,
+    // Nodes that found no room for their list.
     overflows: atomic<u32>,
     padding0: u32,
     padding1: u32,
     words: array<u32>,
 }
 
-const CHUNK_WORDS: u32 = 8u;
-const CHUNK_ENTRIES: u32 = 7u;
+const RUN: u32 = 15u;
 
 struct List {
-    first_chunk: u32,
+    first_run: u32,
     length: u32,
 }
 

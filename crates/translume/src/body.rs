@@ -475,12 +475,13 @@ impl Body {
         let channels = [0, 1, 2].map(|channel| Dipole::new(&self.medium, channel));
         let table = self.kernel.write(queue, &channels, diagonal);
         let layout = Scatter::layout(table, &channels, &self.tree, self.method);
-        if let Method::Dual { theta } = self.method {
+        // A single texel has no tree.
+        if let (Method::Dual { theta }, 1..) = (self.method, self.tree.top_level()) {
             let (stage, tree) = (&self.stages.scatter.dual, &self.tree);
             let memory = self.dual.get_or_insert_with(|| {
                 stage.memory(device, &self.buffers, &self.kernel.view, tree, self.list_entries)
             });
-            memory.write(queue, &layout, theta);
+            memory.write(queue, &layout, &self.tree, theta);
         }
         let uniforms = Scatter::uniforms(layout);
         queue.write_buffer(&self.buffers.scatter_uniforms, 0, &uniforms);

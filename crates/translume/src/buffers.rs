@@ -35,6 +35,7 @@ pub(crate) struct Buffers {
     pub cluster_uniforms: wgpu::Buffer,
     pub clusters: wgpu::Buffer,
     pub receivers: wgpu::Buffer,
+    pub bounds: wgpu::Buffer,
     pub scatter_uniforms: wgpu::Buffer,
     pub exitance: wgpu::Buffer,
     pub pixels: wgpu::Buffer,
@@ -186,6 +187,7 @@ impl Buffers {
                 "receivers",
                 u64::from(tree.clusters()) * size_of::<ReceiverLayout>() as u64,
             ),
+            bounds: vectors("bounds", (tree.sources() + tree.clusters()) as usize),
             scatter_uniforms: gpu::uniform_buffer(device, "scatter", UNIFORM_STRIDE * u64::from(dispatches)),
             exitance: vectors("exitance", atlas.texels.len()),
             pixels: storage("pixels", &atlas.pixels),
@@ -230,7 +232,7 @@ pub struct Outputs<'a> {
     /// Radiant exitance B of each texel, RGB; from [`Method::Dual`](crate::Method::Dual) with the number of kernel evaluations, where a
     /// group's are shared out among its texels.
     pub exitance: &'a wgpu::Buffer,
-    /// Only with [`Method::Dual`](crate::Method::Dual): its lists of open sources. The first word is how many chunks of eight words they
+    /// Only with [`Method::Dual`](crate::Method::Dual): its lists of open sources. The first word is how many words they
     /// would have filled, the second how many groups of receivers found no room. Those do not err, but take longer: their texels
     /// walk the tree on their own.
     pub lists: Option<&'a wgpu::Buffer>,

@@ -150,6 +150,9 @@ pub(crate) struct LevelLayout {
     pub node_count: u32,
     pub child_offset: u32,
     pub node_offset: u32,
+    pub source_offset: u32,
+    pub receiver_offset: u32,
+    pub padding: [u32; 2],
 }
 
 /// A group of texels seen as one receiver.
@@ -170,7 +173,7 @@ pub(crate) struct ExpansionLayout {
     pub value: [f32; 3],
     pub evaluations: f32,
     pub x: [f32; 3],
-    pub first_chunk: u32,
+    pub first_run: u32,
     pub y: [f32; 3],
     pub list_length: u32,
     pub z: [f32; 4],
@@ -188,8 +191,11 @@ pub(crate) struct DualLayout {
     pub theta_squared: f32,
     pub leaf_theta_squared: f32,
     pub z_r_squared: f32,
-    pub chunk_count: u32,
+    pub capacity: u32,
+    pub first_receiver: u32,
+    pub padding: [u32; 3],
     pub offsets: [[u32; 4]; 4],
+    pub sources: [[u32; 4]; 4],
 }
 
 /// A group of texels seen as one source. Lengths in mm. Mirrors `Cluster` in `shared/cluster.wgsl`.
@@ -341,7 +347,12 @@ mod tests {
         );
         check!(GATHER, "Texel", TexelLayout, [triangle, barycentric_1, barycentric_2, area_ratio, points]);
         check!(GATHER, "LightPoint", LightPointLayout, [triangle, weights]);
-        check!(CLUSTER, "Level", LevelLayout, [child_count, node_count, child_offset, node_offset]);
+        check!(
+            CLUSTER,
+            "Level",
+            LevelLayout,
+            [child_count, node_count, child_offset, node_offset, source_offset, receiver_offset]
+        );
         check!(CLUSTER, "Cluster", Cluster, [centroid, spread, power, radius, normal, area]);
         check!(SCATTER, "KernelTable", KernelTableLayout, [least_r2, least_s2, columns, rows]);
         check!(
@@ -350,8 +361,8 @@ mod tests {
             ScatterLayout,
             [table, texel_count, first_source, source_count, top_level, theta_squared, z_r_squared, offsets]
         );
-        check!(DUAL, "Receiver", ReceiverLayout, [centre, spread, radius, texels]);
-        check!(DUAL, "Expansion", ExpansionLayout, [value, evaluations, x, first_chunk, y, list_length, z]);
+        check!(CLUSTER, "Receiver", ReceiverLayout, [centre, spread, radius, texels]);
+        check!(DUAL, "Expansion", ExpansionLayout, [value, evaluations, x, first_run, y, list_length, z]);
         check!(
             DUAL,
             "Dual",
@@ -365,8 +376,10 @@ mod tests {
                 theta_squared,
                 leaf_theta_squared,
                 z_r_squared,
-                chunk_count,
-                offsets
+                capacity,
+                first_receiver,
+                offsets,
+                sources
             ]
         );
         let (members, span) = naga_layout(translume_shaders::COMPOSITE.source, "Composite");

@@ -1,6 +1,6 @@
 //! Dual: the scatter sum with groups of texels at both ends, level by level from the coarsest receivers to the texels.
 //!
-//! reads  texel positions, normals, irradiance, clusters, receivers, kernel table      writes  exitance per texel, linear RGB
+//! reads  texel positions, normals, irradiance, clusters, bounds, kernel table      writes  exitance per texel, linear RGB
 //! judge  `Method::AllPairs` on the same adapter                                        WGSL    `dual.wgsl`
 
 use crate::Error;
@@ -13,9 +13,10 @@ use crate::stages::cluster::Tree;
 const LEAST_RECEIVERS: u32 = 64;
 /// Opening angle of single texels over that of groups: they test the source's size alone.
 const LEAF_THETA: f32 = 0.64;
-/// Words of a chunk of a list, and of what stands before the first; as in `shared/lists.wgsl`.
-const CHUNK_WORDS: u32 = 8;
+/// Bytes in front of the lists.
 const LISTS_HEADER: u64 = 16;
+/// Words that the list of the root takes.
+const ROOT: u32 = 2;
 
 pub(crate) struct Dual {
     layout: wgpu::BindGroupLayout,
@@ -30,7 +31,7 @@ pub(crate) struct DualMemory {
     pub lists: wgpu::Buffer,
     group: wgpu::BindGroup,
     start_level: u32,
-    chunks: u32,
+    capacity: u32,
 }
 
 /// Level of the coarsest receivers; 0 where texels are too few for groups of them.
@@ -38,14 +39,14 @@ fn start_level(tree: &Tree) -> u32 {
     tree.counts.iter().rposition(|count| *count >= LEAST_RECEIVERS).unwrap_or(0) as u32
 }
 
-fn chunks(texels: u32, entries_per_texel: u32) -> u32 {
-    // One at least, which is the root's.
-    texels.saturating_mul(entries_per_texel) / CHUNK_WORDS + 1
+/// Words for the lists.
+fn capacity(texels: u32, entries_per_texel: u32) -> u32 {
+    texels.saturating_mul(entries_per_texel).saturating_add(ROOT)
 }
 
 /// Whether the device can hold what the dual scatter remembers.
 pub(crate) fn check(tree: &Tree, entries_per_texel: u32, limits: &wgpu::Limits) -> Result<(), Error> {
-    let lists = LISTS_HEADER + u64::from(chunks(tree.counts[0], entries_per_texel) * CHUNK_WORDS) * 4;
+    let lists = LISTS_HEADER + 4 * u64::from(capacity(tree.counts[0], entries_per_texel));
     let expansions = u64::from(tree.clusters()) * size_of::<ExpansionLayout>() as u64;
     let required = lists.max(expansions);
     let actual = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
@@ -84,11 +85,11 @@ impl Dual {
         entries_per_texel: u32,
     ) -> DualMemory {
         let start_level = start_level(tree);
-        let chunks = chunks(tree.counts[0], entries_per_texel);
+        let capacity = capacity(tree.counts[0], entries_per_texel);
         let uniforms = gpu::uniform_buffer(device, "dual", UNIFORM_STRIDE * u64::from(start_level + 1));
         let size = u64::from(tree.clusters().max(1)) * size_of::<ExpansionLayout>() as u64;
         let expansions = gpu::buffer(device, "expansions", size);
-        let lists = gpu::buffer(device, "lists", LISTS_HEADER + u64::from(chunks * CHUNK_WORDS) * 4);
+        let lists = gpu::buffer(device, "lists", LISTS_HEADER + 4 * u64::from(capacity));
         let resources = [
             gpu::uniform_slot::<DualLayout>(&uniforms),
             buffers.texel_positions.as_entire_binding(),
@@ -97,12 +98,12 @@ impl Dual {
             buffers.clusters.as_entire_binding(),
             buffers.exitance.as_entire_binding(),
             wgpu::BindingResource::TextureView(kernel_table),
-            buffers.receivers.as_entire_binding(),
+            buffers.bounds.as_entire_binding(),
             expansions.as_entire_binding(),
             lists.as_entire_binding(),
         ];
         let group = gpu::bind(device, "dual", &self.layout, &resources);
-        DualMemory { uniforms, lists, group, start_level, chunks }
+        DualMemory { uniforms, lists, group, start_level, capacity }
     }
 
     pub fn encode(&self, pass: &mut Pass<'_>, memory: &DualMemory, tree: &Tree) {
@@ -119,8 +120,12 @@ impl Dual {
 
 impl DualMemory {
     /// One uniform per level of receivers, ready for dynamic offsets.
-    pub fn write(&self, queue: &wgpu::Queue, scatter: &ScatterLayout, theta: f32) {
+    pub fn write(&self, queue: &wgpu::Queue, scatter: &ScatterLayout, tree: &Tree, theta: f32) {
         let stride = UNIFORM_STRIDE as usize;
+        let mut sources = [[0; 4]; 4];
+        for (level, offset) in tree.source_offsets.iter().enumerate() {
+            sources[level / 4][level % 4] = *offset;
+        }
         let mut bytes = vec![0; stride * (self.start_level as usize + 1)];
         for (level, slot) in (0..).zip(bytes.chunks_mut(stride)) {
             let uniform = DualLayout {
@@ -132,8 +137,11 @@ impl DualMemory {
                 theta_squared: theta * theta,
                 leaf_theta_squared: (LEAF_THETA * theta).powi(2),
                 z_r_squared: scatter.z_r_squared,
-                chunk_count: self.chunks,
+                capacity: self.capacity,
+                first_receiver: tree.sources(),
+                padding: [0; 3],
                 offsets: scatter.offsets,
+                sources,
             };
             slot[..size_of::<DualLayout>()].copy_from_slice(bytemuck::bytes_of(&uniform));
         }

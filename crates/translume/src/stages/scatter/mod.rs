@@ -150,7 +150,7 @@ impl Scatter {
                     pass.dispatch(texels);
                 }
             }
-            // A body whose method is dual calls `dual` itself.
+            // `dual` has its own; it comes here for a body of a single texel.
             Method::Tree { .. } | Method::Dual { .. } => {
                 pass.set_pipeline(&self.tree);
                 pass.set_bind_group(group, &[0]);
