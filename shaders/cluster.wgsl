@@ -22,6 +22,8 @@ struct Level {
 @group(0) @binding(5) var<storage, read_write> receivers: array<Receiver>;
 // Centres and sizes: first of all sources, from the texels up, dark ones with size 0; then of all receivers above the texels.
 @group(0) @binding(6) var<storage, read_write> bounds: array<vec4f>;
+// What the sources of `bounds` send, in their order.
+@group(0) @binding(7) var<storage, read_write> lamps: array<Lamp>;
 
 fn texel_cluster(index: u32) -> Cluster {
     let place = texel_positions[index];
@@ -39,6 +41,7 @@ fn from_texels(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) gro
             children[k] = texel_cluster(node * 4u + k);
             receiving[k] = Receiver(children[k].centroid, 0.0, 0.0, 1u, 0u, 0u);
             bounds[node * 4u + k] = vec4f(children[k].centroid, select(0.0, NO_SIZE, any(children[k].power > vec3f(0.0))));
+            lamps[node * 4u + k] = Lamp(children[k].power, NEIGHBOUR_NARROWING * children[k].spread, children[k].normal, 0u);
         }
     }
     store(node, merge(&children, min(level.child_count - node * 4u, 4u)), merge_receivers(&receiving));
@@ -64,6 +67,7 @@ fn store(node: u32, cluster: Cluster, receiver: Receiver) {
     receivers[level.node_offset + node] = receiver;
     let size = select(0.0, max(size_of(cluster.spread, cluster.radius), NO_SIZE), any(cluster.power > vec3f(0.0)));
     bounds[level.source_offset + node] = vec4f(cluster.centroid, size);
+    lamps[level.source_offset + node] = Lamp(cluster.power, cluster.spread, cluster.normal, 0u);
     bounds[level.receiver_offset + node] = vec4f(receiver.centre, size_of(receiver.spread, receiver.radius));
 }
 

@@ -10,7 +10,7 @@ struct Dual {
     // Level of the first receivers, which take over the root.
     start_level: u32,
     top_level: u32,
-    // Opening angle: accepted when source size + 1.5·receiver size < theta·√(distance² + z_r²).
+    // Opening angle: accepted when source size + RECEIVER_WEIGHT·receiver size < theta·√(distance² + z_r²).
     theta_squared: f32,
     // The same for single texels, which have no size.
     leaf_theta_squared: f32,
@@ -23,73 +23,67 @@ struct Dual {
     padding0: u32,
     padding1: u32,
     padding2: u32,
-    // Where each level above the texels begins in `clusters`, in `expansions`, and among the receivers.
+    // Where each level above the texels begins among the receivers.
     offsets: array<vec4u, 4>,
     // Where each level begins among the sources in `bounds`.
     sources: array<vec4u, 4>,
 }
 
 @group(0) @binding(0) var<uniform> dual: Dual;
-@group(0) @binding(1) var<storage, read> texel_positions: array<vec4f>;
-@group(0) @binding(2) var<storage, read> texel_normals: array<vec4f>;
-@group(0) @binding(3) var<storage, read> texel_irradiance: array<vec4f>;
-@group(0) @binding(4) var<storage, read> clusters: array<Cluster>;
-@group(0) @binding(5) var<storage, read_write> exitance: array<vec4f>;
-@group(0) @binding(6) var kernel_table: texture_2d<f32>;
-@group(0) @binding(7) var<storage, read> bounds: array<vec4f>;
-@group(0) @binding(8) var<storage, read_write> expansions: array<Expansion>;
-@group(0) @binding(9) var<storage, read_write> lists: Lists;
+@group(0) @binding(1) var<storage, read> bounds: array<vec4f>;
+@group(0) @binding(2) var<storage, read> lamps: array<Lamp>;
+@group(0) @binding(3) var<storage, read_write> exitance: array<vec4f>;
+// Of receivers from the second level on; those of the first go straight to `exitance`.
+@group(0) @binding(4) var<storage, read_write> expansions: array<Expansion>;
+// Where each receiver's open sources are in `lists`.
+@group(0) @binding(5) var<storage, read_write> heads: array<u32>;
+@group(0) @binding(6) var<storage, read_write> lists: Lists;
+@group(0) @binding(7) var kernel_table: texture_2d<f32>;
+
+// A second-order expansion errs more across a receiver than the averaged profile does across a source of the same size.
+const RECEIVER_WEIGHT: f32 = 1.5;
+// A source that is larger than the receiver by this factor is opened first.
+const SOURCE_EXCESS: f32 = 1.4;
 
 // Sources an invocation accepts before it evaluates the kernel for all of them: a wave whose invocations walk differently far still
 // evaluates together.
 const BATCH: u32 = 16u;
-var<workgroup> accepted: array<u32, 1024>;
-// Sources it leaves to its children, until they make a run.
-var<workgroup> left: array<u32, 960>;
+// Sources it leaves to its children before it writes them down.
+const RUN: u32 = 15u;
+const NOTED: u32 = 32u;
+// Both kinds, from either end.
+var<workgroup> notes: array<u32, 2048>;
 
-fn source(entry: u32, receiver: u32) -> Source {
-    let level = packed_level(entry);
-    let node = packed_node(entry);
-    if level == 0u { return texel_source(node, receiver); }
-    let at = dual.offsets[level / 4u][level % 4u] + node;
-    return Source(clusters[at].centroid, clusters[at].spread, clusters[at].normal, clusters[at].power);
+fn note(place: u32, local: u32) -> u32 {
+    return place * 64u + local;
 }
 
-// A walk through the subtrees of a list's entries.
+// A walk through the subtrees of a list's nodes.
 struct Walk {
-    // Where the run begins that is read, and what is left of it.
-    run: u32,
-    unread: u32,
-    runs: u32,
-    // Level of the entry whose subtree is walked, and where in it the walk is.
+    // The next word of the list.
+    cursor: u32,
+    // Level of the listed node whose subtree is walked, and where in it the walk is.
     top: u32,
     level: u32,
     node: u32,
-    // Whether the subtree is done.
+    // Whether the subtree is done, and whether the list is.
     done: bool,
+    ended: bool,
 }
 
-fn walk(list: List) -> Walk {
-    let runs = (list.length + RUN - 1u) / RUN;
-    return Walk(list.first_run, list.length - RUN * (max(runs, 1u) - 1u), runs, 0u, 0u, 0u, true);
+fn walk(head: u32) -> Walk {
+    return Walk(head, 0u, 0u, 0u, true, false);
 }
 
-// Goes to the next entry if the last one is done; says whether there was any.
-fn arrive(w: ptr<function, Walk>) -> bool {
-    if !(*w).done { return true; }
-    if (*w).unread == 0u {
-        if (*w).runs <= 1u { return false; }
-        (*w).run = lists.words[(*w).run];
-        (*w).runs -= 1u;
-        (*w).unread = RUN;
-    }
-    let entry = lists.words[(*w).run + (*w).unread];
-    (*w).unread -= 1u;
-    (*w).top = packed_level(entry);
+// To the next word of the list.
+fn turn_over(w: ptr<function, Walk>) {
+    let word = lists.words[(*w).cursor];
+    (*w).top = packed_level(word);
     (*w).level = (*w).top;
-    (*w).node = packed_node(entry);
-    (*w).done = false;
-    return true;
+    (*w).node = packed_node(word);
+    (*w).done = (*w).top == LINK;
+    (*w).cursor = select((*w).cursor - 1u, (*w).node, (*w).done);
+    (*w).ended = (*w).cursor == 0u && (*w).done;
 }
 
 fn open(w: ptr<function, Walk>) {
@@ -106,37 +100,30 @@ fn pass_by(w: ptr<function, Walk>) {
     (*w).done = (*w).level == (*w).top;
 }
 
-fn bound(level: u32, node: u32) -> vec4f {
-    return bounds[dual.sources[level / 4u][level % 4u] + node];
+fn source_index(level: u32, node: u32) -> u32 {
+    return dual.sources[level / 4u][level % 4u] + node;
 }
 
-// Behind a word for the link, the list of the root alone.
+fn receiver_index(level: u32, node: u32) -> u32 {
+    return dual.offsets[level / 4u][level % 4u] + node;
+}
+
 @compute @workgroup_size(1)
 fn start() {
-    atomicStore(&lists.taken, 2u);
+    atomicStore(&lists.taken, ROOT_WORDS);
     atomicStore(&lists.overflows, 0u);
-    lists.words[1] = packed(dual.top_level, 0u);
+    lists.words[0] = packed(LINK, 0u);
+    lists.words[1] = packed(LINK, 0u);
+    lists.words[ROOT_HEAD] = packed(dual.top_level, 0u);
 }
 
-// What the parent left: its expansion about `place`, and its open sources.
-fn inherited(node: u32, level: u32, place: vec3f) -> Expansion {
-    var e: Expansion;
-    e.list_length = 1u;
-    if level < dual.start_level {
-        let parent = dual.offsets[(level + 1u) / 4u][(level + 1u) % 4u] + node / 4u;
-        e = moved(expansions[parent], place - bounds[dual.first_receiver + parent].xyz);
-    }
-    return e;
-}
-
-// Writes a run from the invocation's `left`; false where there is no room.
-fn write_run(list: ptr<function, List>, count: u32, local: u32) -> bool {
+// Writes down the sources left to the children; false where there is no room.
+fn write_run(head: ptr<function, u32>, count: u32, local: u32) -> bool {
     let run = atomicAdd(&lists.taken, count + 1u);
     if run + count >= dual.capacity { return false; }
-    lists.words[run] = (*list).first_run;
-    for (var k = 0u; k < count; k++) { lists.words[run + 1u + k] = left[k * 64u + local]; }
-    (*list).first_run = run;
-    (*list).length += count;
+    lists.words[run] = packed(LINK, *head);
+    for (var k = 0u; k < count; k++) { lists.words[run + 1u + k] = notes[note(NOTED - 1u - k, local)]; }
+    *head = run + count;
     return true;
 }
 
@@ -145,68 +132,76 @@ fn write_run(list: ptr<function, List>, count: u32, local: u32) -> bool {
 fn inner(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_index) local: u32) {
     let node = item_index(group, groups, local);
     if node >= level_count(dual.texel_count, dual.level) { return; }
-    let own = dual.offsets[dual.level / 4u][dual.level % 4u] + node;
+    let own = receiver_index(dual.level, node);
     let receiver = bounds[dual.first_receiver + own].xyz;
     let size = bounds[dual.first_receiver + own].w;
-    let before = inherited(node, dual.level, receiver);
+    var before: Expansion;
+    var head = ROOT_HEAD;
+    if dual.level < dual.start_level {
+        let parent = receiver_index(dual.level + 1u, node / 4u);
+        before = moved(expansions[parent - dual.offsets[0][2]], receiver - bounds[dual.first_receiver + parent].xyz);
+        head = heads[parent];
+    }
     var e = before;
-    var w = walk(List(e.first_run, e.list_length));
-    var list = List(0u, 0u);
-    var left_count = 0u;
+    var w = walk(head);
+    var own_head = 0u;
+    var left = 0u;
     var room = true;
-    var arrived = true;
     var evaluated = 0u;
-    while arrived && room {
+    while !w.ended && room {
         var count = 0u;
-        while count < BATCH && left_count < RUN {
-            arrived = arrive(&w);
-            if !arrived { break; }
-            let seen = bound(w.level, w.node);
+        while count < BATCH && left < RUN && !w.ended {
+            if w.done { turn_over(&w); }
+            if w.done { continue; }
+            let index = source_index(w.level, w.node);
+            let seen = bounds[index];
             let offset = receiver - seen.xyz;
-            let needed = seen.w + 1.5 * size;
+            let needed = seen.w + RECEIVER_WEIGHT * size;
             let small = needed * needed < dual.theta_squared * (dot(offset, offset) + dual.z_r_squared);
-            if seen.w > size && !small {
+            if seen.w > SOURCE_EXCESS * size && w.level > 0u && !small {
                 open(&w);
                 continue;
             }
             if seen.w > 0.0 {
-                if small {
-                    accepted[count * 64u + local] = packed(w.level, w.node);
-                    count += 1u;
-                } else {
-                    left[left_count * 64u + local] = packed(w.level, w.node);
-                    left_count += 1u;
-                }
+                notes[note(select(NOTED - 1u - left, count, small), local)] = select(packed(w.level, w.node), index, small);
+                count += select(0u, 1u, small);
+                left += select(1u, 0u, small);
             }
             pass_by(&w);
         }
-        if left_count == RUN || !arrived && left_count > 0u {
-            room = write_run(&list, left_count, local);
-            left_count = 0u;
+        if left == RUN || w.ended && left > 0u {
+            room = write_run(&own_head, left, local);
+            left = 0u;
         }
         for (var k = 0u; k < count; k++) {
-            let s = source(accepted[k * 64u + local], 0xffffffffu);
-            let d = receiver - s.place;
+            let index = notes[note(k, local)];
+            let lamp = lamps[index];
+            let d = receiver - bounds[index].xyz;
             let distance_squared = dot(d, d);
-            let along = dot(d, s.normal);
+            let along = dot(d, lamp.normal);
             let facing = select(0.0, along * along / distance_squared, distance_squared > 0.0);
             // Derivatives by r² lose their digits where r hardly counts.
             let r2 = max(distance_squared, max(0.01 * size * size, dual.table.least_r2));
-            let s2 = s.spread * s.spread;
-            add(&e, s.power, profile_jet(dual.table, kernel_table, r2, s2, min(facing, 1.0)), d);
+            add(&e, lamp.power, profile_jet(dual.table, kernel_table, r2, lamp.spread * lamp.spread, min(facing, 1.0)), d);
         }
         evaluated += count;
     }
     let texels = min(1u << (2u * dual.level), dual.texel_count - (node << (2u * dual.level)));
     e.evaluations += f32(evaluated) / f32(texels);
-    e.first_run = list.first_run;
-    e.list_length = list.length;
     // Without room for a list nothing is resolved here: the children take over what the parent left.
     if !room {
         atomicAdd(&lists.overflows, 1u);
         e = before;
+        own_head = head;
     }
-    expansions[own] = e;
+    heads[own] = own_head;
+    if dual.level > 1u {
+        expansions[own - dual.offsets[0][2]] = e;
+        return;
+    }
+    for (var k = 0u; k < texels; k++) {
+        exitance[node * 4u + k] = vec4f(moved(e, bounds[node * 4u + k].xyz - receiver).value, e.evaluations);
+    }
 }
 
 // Receivers that are single texels.
@@ -214,33 +209,38 @@ fn inner(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: v
 fn leaf(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_index) local: u32) {
     let index = item_index(group, groups, local);
     if index >= dual.texel_count { return; }
-    let receiver = texel_positions[index].xyz;
-    let e = inherited(index, 0u, receiver);
-    var sum = vec3f(0.0);
-    var w = walk(List(e.first_run, e.list_length));
-    var arrived = true;
-    var evaluated = 0u;
-    while arrived {
+    let receiver = bounds[index].xyz;
+    var sum = vec4f(0.0);
+    var head = ROOT_HEAD;
+    if dual.start_level > 0u {
+        sum = exitance[index];
+        head = heads[index / 4u];
+    }
+    var w = walk(head);
+    while !w.ended {
         var count = 0u;
-        while count < BATCH {
-            arrived = arrive(&w);
-            if !arrived { break; }
-            let seen = bound(w.level, w.node);
+        while count < BATCH && !w.ended {
+            if w.done { turn_over(&w); }
+            if w.done { continue; }
+            let at = source_index(w.level, w.node);
+            let seen = bounds[at];
             let offset = receiver - seen.xyz;
             if w.level > 0u && seen.w * seen.w > dual.leaf_theta_squared * (dot(offset, offset) + dual.z_r_squared) {
                 open(&w);
                 continue;
             }
             if seen.w > 0.0 {
-                accepted[count * 64u + local] = packed(w.level, w.node);
+                notes[note(count, local)] = at;
                 count += 1u;
             }
             pass_by(&w);
         }
         for (var k = 0u; k < count; k++) {
-            sum += received(dual.table, receiver, source(accepted[k * 64u + local], index));
+            let at = notes[note(k, local)];
+            let lamp = lamps[at];
+            let spread = lamp.spread * select(1.0, 1.0 / NEIGHBOUR_NARROWING, at == index);
+            sum += vec4f(received(dual.table, receiver, Source(bounds[at].xyz, spread, lamp.normal, lamp.power)), 1.0);
         }
-        evaluated += count;
     }
-    exitance[index] = vec4f(e.value + sum, e.evaluations + f32(evaluated));
+    exitance[index] = sum;
 }

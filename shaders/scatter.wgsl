@@ -26,6 +26,13 @@ struct Scatter {
 @group(0) @binding(5) var<storage, read_write> exitance: array<vec4f>;
 @group(0) @binding(6) var kernel_table: texture_2d<f32>;
 
+// The texel as the receiver of the same index (its own disc) or any other sees it.
+fn texel_source(index: u32, receiver: u32) -> Source {
+    let place = texel_positions[index];
+    let spread = disc_spread(place.w) * select(NEIGHBOUR_NARROWING, 1.0, index == receiver);
+    return Source(place.xyz, spread, texel_normals[index].xyz, texel_irradiance[index].rgb * place.w);
+}
+
 // Every receiver collects from a range of sources: the exact sum that everything faster is compared with.
 @compute @workgroup_size(64)
 fn all_pairs(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_index) local: u32) {

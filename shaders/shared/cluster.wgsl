@@ -27,6 +27,19 @@ struct Receiver {
     padding1: u32,
 }
 
+// Texels are squares and tile the surface; discs of their areas overlap along the axes and leave gaps at the corners. Seen from the
+// middle of a texel, its neighbours' discs reach too far in. Narrower by this factor, the sum over an evenly lit plane closes within
+// 0.5 % instead of 1.9 % at any mean free path.
+const NEIGHBOUR_NARROWING: f32 = 0.945;
+
+// A cluster or, as any other sees it, a texel as a source whose place is known.
+struct Lamp {
+    power: vec3f,
+    spread: f32,
+    normal: vec3f,
+    padding: u32,
+}
+
 // Size of a lit texel, which has none: the least that is not 0.
 const NO_SIZE: f32 = 1e-30;
 

@@ -5,25 +5,15 @@ struct Expansion {
     evaluations: f32,
     // Gradient.
     x: vec3f,
-    // The sources still open, of this node or, where the memory for them was spent, of an ancestor.
-    first_run: u32,
     y: vec3f,
-    list_length: u32,
     z: vec3f,
-    padding0: u32,
     // Hessian.
     xx: vec3f,
-    padding1: u32,
     yy: vec3f,
-    padding2: u32,
     zz: vec3f,
-    padding3: u32,
     xy: vec3f,
-    padding4: u32,
     xz: vec3f,
-    padding5: u32,
     yz: vec3f,
-    padding6: u32,
 }
 
 // The expansion about a point `d` away.

@@ -1,5 +1,5 @@
-// Lists of nodes of the tree, of any length, in one memory. A list is a chain of runs: the run written last comes first and may be short,
-// all others have RUN entries. In front of a run stands where the next one begins.
+// Lists of nodes of the tree, of any length, in one memory. A list is read backwards from its head, the index of its last word, until a word
+// that is no node: a link to the head of what was written before, or to 0, where the list ends. The empty list's head is 0.
 struct Lists {
     // Words taken, or that would have been.
     taken: atomic<u32>,
@@ -10,12 +10,11 @@ struct Lists {
     words: array<u32>,
 }
 
-const RUN: u32 = 15u;
-
-struct List {
-    first_run: u32,
-    length: u32,
-}
+// The list of the root alone.
+const ROOT_HEAD: u32 = 2u;
+const ROOT_WORDS: u32 = 3u;
+// In place of a level.
+const LINK: u32 = 15u;
 
 // A node of the tree in one word.
 fn packed(level: u32, node: u32) -> u32 {

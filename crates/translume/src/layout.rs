@@ -166,20 +166,6 @@ pub(crate) struct ReceiverLayout {
     pub padding: [u32; 2],
 }
 
-/// Radiant exitance around a point; never written by the host.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
-pub(crate) struct ExpansionLayout {
-    pub value: [f32; 3],
-    pub evaluations: f32,
-    pub x: [f32; 3],
-    pub first_run: u32,
-    pub y: [f32; 3],
-    pub list_length: u32,
-    pub z: [f32; 4],
-    pub hessian: [[f32; 4]; 6],
-}
-
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub(crate) struct DualLayout {
@@ -362,7 +348,6 @@ mod tests {
             [table, texel_count, first_source, source_count, top_level, theta_squared, z_r_squared, offsets]
         );
         check!(CLUSTER, "Receiver", ReceiverLayout, [centre, spread, radius, texels]);
-        check!(DUAL, "Expansion", ExpansionLayout, [value, evaluations, x, first_run, y, list_length, z]);
         check!(
             DUAL,
             "Dual",

@@ -80,7 +80,7 @@ impl Tree {
 
 impl ClusterStage {
     pub fn new(device: &wgpu::Device) -> Self {
-        let types = [UNIFORM_ARRAY, READ, READ, READ, WRITE, WRITE, WRITE];
+        let types = [UNIFORM_ARRAY, READ, READ, READ, WRITE, WRITE, WRITE, WRITE];
         let layout = gpu::layout(device, "cluster", wgpu::ShaderStages::COMPUTE, &types);
         let module = gpu::module(device, translume_shaders::CLUSTER);
         Self {
@@ -99,6 +99,7 @@ impl ClusterStage {
             buffers.clusters.as_entire_binding(),
             buffers.receivers.as_entire_binding(),
             buffers.bounds.as_entire_binding(),
+            buffers.lamps.as_entire_binding(),
         ];
         gpu::bind(device, "cluster", &self.layout, &resources)
     }

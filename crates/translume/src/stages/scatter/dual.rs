@@ -1,12 +1,12 @@
 //! Dual: the scatter sum with groups of texels at both ends, level by level from the coarsest receivers to the texels.
 //!
-//! reads  texel positions, normals, irradiance, clusters, bounds, kernel table      writes  exitance per texel, linear RGB
+//! reads  bounds and lamps of the tree, kernel table      writes  exitance per texel, linear RGB
 //! judge  `Method::AllPairs` on the same adapter                                        WGSL    `dual.wgsl`
 
 use crate::Error;
 use crate::buffers::Buffers;
 use crate::gpu::{self, FLOAT_TEXTURE, Pass, READ, UNIFORM_ARRAY, UNIFORM_STRIDE, WRITE};
-use crate::layout::{DualLayout, ExpansionLayout, ScatterLayout};
+use crate::layout::{DualLayout, ScatterLayout};
 use crate::stages::cluster::Tree;
 
 /// The coarsest level of receivers has at least this many nodes: fewer would not share enough to be worth a dispatch.
@@ -15,8 +15,10 @@ const LEAST_RECEIVERS: u32 = 64;
 const LEAF_THETA: f32 = 0.64;
 /// Bytes in front of the lists.
 const LISTS_HEADER: u64 = 16;
-/// Words that the list of the root takes.
-const ROOT: u32 = 2;
+/// Words of the empty list and the list of the root.
+const ROOT: u32 = 3;
+/// Bytes of an expansion, as in `shared/expansion.wgsl`: ten vectors.
+const EXPANSION: u64 = 160;
 
 pub(crate) struct Dual {
     layout: wgpu::BindGroupLayout,
@@ -44,11 +46,15 @@ fn capacity(texels: u32, entries_per_texel: u32) -> u32 {
     texels.saturating_mul(entries_per_texel).saturating_add(ROOT)
 }
 
+/// Bytes of the expansions of all receivers from the second level on.
+fn expansions(tree: &Tree) -> u64 {
+    EXPANSION * u64::from(tree.counts.iter().skip(2).sum::<u32>().max(1))
+}
+
 /// Whether the device can hold what the dual scatter remembers.
 pub(crate) fn check(tree: &Tree, entries_per_texel: u32, limits: &wgpu::Limits) -> Result<(), Error> {
     let lists = LISTS_HEADER + 4 * u64::from(capacity(tree.counts[0], entries_per_texel));
-    let expansions = u64::from(tree.clusters()) * size_of::<ExpansionLayout>() as u64;
-    let required = lists.max(expansions);
+    let required = lists.max(expansions(tree));
     let actual = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
     if required <= actual {
         return Ok(());
@@ -64,7 +70,7 @@ pub(crate) fn check(tree: &Tree, entries_per_texel: u32, limits: &wgpu::Limits) 
 
 impl Dual {
     pub fn new(device: &wgpu::Device) -> Self {
-        let types = [UNIFORM_ARRAY, READ, READ, READ, READ, WRITE, FLOAT_TEXTURE, READ, WRITE, WRITE];
+        let types = [UNIFORM_ARRAY, READ, READ, WRITE, WRITE, WRITE, WRITE, FLOAT_TEXTURE];
         let layout = gpu::layout(device, "dual", wgpu::ShaderStages::COMPUTE, &types);
         let module = gpu::module(device, translume_shaders::DUAL);
         Self {
@@ -87,20 +93,18 @@ impl Dual {
         let start_level = start_level(tree);
         let capacity = capacity(tree.counts[0], entries_per_texel);
         let uniforms = gpu::uniform_buffer(device, "dual", UNIFORM_STRIDE * u64::from(start_level + 1));
-        let size = u64::from(tree.clusters().max(1)) * size_of::<ExpansionLayout>() as u64;
-        let expansions = gpu::buffer(device, "expansions", size);
+        let expansions = gpu::buffer(device, "expansions", expansions(tree));
+        let heads = gpu::buffer(device, "heads", 4 * u64::from(tree.clusters()));
         let lists = gpu::buffer(device, "lists", LISTS_HEADER + 4 * u64::from(capacity));
         let resources = [
             gpu::uniform_slot::<DualLayout>(&uniforms),
-            buffers.texel_positions.as_entire_binding(),
-            buffers.texel_normals.as_entire_binding(),
-            buffers.irradiance.as_entire_binding(),
-            buffers.clusters.as_entire_binding(),
-            buffers.exitance.as_entire_binding(),
-            wgpu::BindingResource::TextureView(kernel_table),
             buffers.bounds.as_entire_binding(),
+            buffers.lamps.as_entire_binding(),
+            buffers.exitance.as_entire_binding(),
             expansions.as_entire_binding(),
+            heads.as_entire_binding(),
             lists.as_entire_binding(),
+            wgpu::BindingResource::TextureView(kernel_table),
         ];
         let group = gpu::bind(device, "dual", &self.layout, &resources);
         DualMemory { uniforms, lists, group, start_level, capacity }
