@@ -41,7 +41,7 @@ struct Dual {
 @group(0) @binding(7) var kernel_table: texture_2d<f32>;
 
 // A second-order expansion errs more across a receiver than the averaged profile does across a source of the same size.
-const RECEIVER_WEIGHT: f32 = 1.5;
+const RECEIVER_WEIGHT: f32 = 2.0;
 // A source that is larger than the receiver by this factor is opened first.
 const SOURCE_EXCESS: f32 = 1.4;
 
@@ -50,6 +50,8 @@ const SOURCE_EXCESS: f32 = 1.4;
 const BATCH: u32 = 16u;
 // Sources it leaves to its children before it writes them down.
 const RUN: u32 = 15u;
+// Beside the head of a list of a node of the first level: the list is an ancestor's.
+const UNDECIDED: u32 = 0x80000000u;
 const NOTED: u32 = 32u;
 // Both kinds, from either end.
 var<workgroup> notes: array<u32, 2048>;
@@ -144,6 +146,8 @@ fn inner(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: v
     }
     var e = before;
     var w = walk(head);
+    // The first level knows what its texels will want, who are too close together to differ.
+    let decides = dual.level == 1u;
     var own_head = 0u;
     var left = 0u;
     var room = true;
@@ -157,13 +161,15 @@ fn inner(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: v
             let seen = bounds[index];
             let offset = receiver - seen.xyz;
             let needed = seen.w + RECEIVER_WEIGHT * size;
-            let small = needed * needed < dual.theta_squared * (dot(offset, offset) + dual.z_r_squared);
-            if seen.w > SOURCE_EXCESS * size && w.level > 0u && !small {
+            let sight = dot(offset, offset) + dual.z_r_squared;
+            let small = needed * needed < dual.theta_squared * sight;
+            let limit = select(SOURCE_EXCESS * SOURCE_EXCESS * size * size, dual.leaf_theta_squared * sight, decides);
+            if seen.w * seen.w > limit && w.level > 0u && !small {
                 open(&w);
                 continue;
             }
             if seen.w > 0.0 {
-                notes[note(select(NOTED - 1u - left, count, small), local)] = select(packed(w.level, w.node), index, small);
+                notes[note(select(NOTED - 1u - left, count, small), local)] = select(packed(w.level, w.node), index, small || decides);
                 count += select(0u, 1u, small);
                 left += select(1u, 0u, small);
             }
@@ -192,7 +198,7 @@ fn inner(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: v
     if !room {
         atomicAdd(&lists.overflows, 1u);
         e = before;
-        own_head = head;
+        own_head = head | select(0u, UNDECIDED, decides);
     }
     heads[own] = own_head;
     if dual.level > 1u {
@@ -211,12 +217,24 @@ fn leaf(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: ve
     if index >= dual.texel_count { return; }
     let receiver = bounds[index].xyz;
     var sum = vec4f(0.0);
-    var head = ROOT_HEAD;
+    var head = ROOT_HEAD | UNDECIDED;
     if dual.start_level > 0u {
         sum = exitance[index];
         head = heads[index / 4u];
     }
-    var w = walk(head);
+    if (head & UNDECIDED) == 0u {
+        while head != 0u {
+            let word = lists.words[head];
+            head -= 1u;
+            if packed_level(word) == LINK {
+                head = packed_node(word);
+                continue;
+            }
+            sum += sent(word, index, receiver);
+        }
+    }
+    var w = walk(packed_node(head));
+    w.ended = head == 0u;
     while !w.ended {
         var count = 0u;
         while count < BATCH && !w.ended {
@@ -235,12 +253,14 @@ fn leaf(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: ve
             }
             pass_by(&w);
         }
-        for (var k = 0u; k < count; k++) {
-            let at = notes[note(k, local)];
-            let lamp = lamps[at];
-            let spread = lamp.spread * select(1.0, 1.0 / NEIGHBOUR_NARROWING, at == index);
-            sum += vec4f(received(dual.table, receiver, Source(bounds[at].xyz, spread, lamp.normal, lamp.power)), 1.0);
-        }
+        for (var k = 0u; k < count; k++) { sum += sent(notes[note(k, local)], index, receiver); }
     }
     exitance[index] = sum;
+}
+
+// What a source sends to a texel, and the one evaluation it took.
+fn sent(source: u32, texel: u32, receiver: vec3f) -> vec4f {
+    let lamp = lamps[source];
+    let spread = lamp.spread * select(1.0, 1.0 / NEIGHBOUR_NARROWING, source == texel);
+    return vec4f(received(dual.table, receiver, Source(bounds[source].xyz, spread, lamp.normal, lamp.power)), 1.0);
 }

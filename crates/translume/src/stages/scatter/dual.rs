@@ -12,7 +12,7 @@ use crate::stages::cluster::Tree;
 /// The coarsest level of receivers has at least this many nodes: fewer would not share enough to be worth a dispatch.
 const LEAST_RECEIVERS: u32 = 64;
 /// Opening angle of single texels over that of groups: they test the source's size alone.
-const LEAF_THETA: f32 = 0.64;
+const LEAF_THETA: f32 = 0.4;
 /// Bytes in front of the lists.
 const LISTS_HEADER: u64 = 16;
 /// Words of the empty list and the list of the root.
