@@ -255,7 +255,8 @@ fn leaf(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: ve
         }
         for (var k = 0u; k < count; k++) { sum += sent(notes[note(k, local)], index, receiver); }
     }
-    exitance[index] = sum;
+    // Where hardly any light comes, an expansion may dip below none.
+    exitance[index] = max(sum, vec4f(0.0));
 }
 
 // What a source sends to a texel, and the one evaluation it took.

@@ -3,7 +3,7 @@
 use crate::Error;
 use crate::gpu::{self, UNIFORM_STRIDE};
 use crate::layout::{
-    AtlasVertexLayout, Cluster, DeformLayout, GatherLayout, InfluenceLayout, LightPointLayout,
+    AtlasVertexLayout, Cluster, DeformLayout, GatherLayout, InfluenceLayout, LampLayout, LightPointLayout,
     ReceiverLayout, TexelLayout,
 };
 use crate::light_points::{LightPoint, light_points};
@@ -189,7 +189,7 @@ impl Buffers {
                 u64::from(tree.clusters()) * size_of::<ReceiverLayout>() as u64,
             ),
             bounds: vectors("bounds", (tree.sources() + tree.clusters()) as usize),
-            lamps: vectors("lamps", 2 * tree.sources() as usize),
+            lamps: gpu::buffer(device, "lamps", u64::from(tree.sources()) * size_of::<LampLayout>() as u64),
             scatter_uniforms: gpu::uniform_buffer(device, "scatter", UNIFORM_STRIDE * u64::from(dispatches)),
             exitance: vectors("exitance", atlas.texels.len()),
             pixels: storage("pixels", &atlas.pixels),

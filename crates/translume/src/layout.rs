@@ -155,6 +155,16 @@ pub(crate) struct LevelLayout {
     pub padding: [u32; 2],
 }
 
+/// A texel or a group of them seen as a source whose place is known.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub(crate) struct LampLayout {
+    pub power: [f32; 3],
+    pub spread: f32,
+    pub normal: [f32; 3],
+    pub padding: u32,
+}
+
 /// A group of texels seen as one receiver.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
@@ -347,6 +357,11 @@ mod tests {
             ScatterLayout,
             [table, texel_count, first_source, source_count, top_level, theta_squared, z_r_squared, offsets]
         );
+        assert_eq!(
+            u64::from(naga_layout(translume_shaders::DUAL.source, "Expansion").1),
+            crate::stages::scatter::dual::EXPANSION
+        );
+        check!(DUAL, "Lamp", LampLayout, [power, spread, normal]);
         check!(CLUSTER, "Receiver", ReceiverLayout, [centre, spread, radius, texels]);
         check!(
             DUAL,

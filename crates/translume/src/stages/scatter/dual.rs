@@ -18,7 +18,7 @@ const LISTS_HEADER: u64 = 16;
 /// Words of the empty list and the list of the root.
 const ROOT: u32 = 3;
 /// Bytes of an expansion, as in `shared/expansion.wgsl`: ten vectors.
-const EXPANSION: u64 = 160;
+pub(crate) const EXPANSION: u64 = 160;
 
 pub(crate) struct Dual {
     layout: wgpu::BindGroupLayout,
