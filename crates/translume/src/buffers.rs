@@ -181,7 +181,8 @@ impl Buffers {
             clusters: gpu::buffer(
                 device,
                 "clusters",
-                u64::from(tree.clusters()) * size_of::<Cluster>() as u64,
+                // One at least: WGSL's array has elements of this size.
+                u64::from(tree.clusters().max(1)) * size_of::<Cluster>() as u64,
             ),
             receivers: gpu::buffer(
                 device,

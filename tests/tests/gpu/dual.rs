@@ -1,9 +1,10 @@
 //! Groups at both ends of the sum, against all pairs on the same adapter.
 
 use glam::{Mat4, Vec3};
+use std::sync::Arc;
 use std::time::Instant;
 use translume::{DirectionalLight, Error, Frame, Light, Lighting, Medium, Method, Stage, readback, wgpu};
-use translume_mesh::builtin;
+use translume_mesh::{Atlas, builtin};
 use translume_reference::scatter;
 use translume_tests::{
     Check, Fixture, Model, Pose, at_least, at_most, creature, dipoles, gpu, holds, notices, plane, sphere,
@@ -75,12 +76,12 @@ fn compared(fixture: &mut Fixture, method: Method) -> Figures {
 
 fn close(what: &str, found: Figures) -> Check {
     at_most(&format!("dual: {what}: error over the mean"), found.rmse, 0.01)?;
-    at_most(&format!("dual: {what}: 99 % of the texels"), found.most, 0.035)?;
+    at_most(&format!("dual: {what}: 99 % of the texels"), found.most, 0.03)?;
     at_most(&format!("dual: {what}: bias"), found.bias, 0.003)
 }
 
-/// The creature at two scales and the sphere, 2,500 to 3,900 texels, in each medium. Measured at θ = 0.75: error 0.04–0.70 %, 99 % of the
-/// texels within 0.2–2.8 %, bias up to 0.07 %, 28–43 evaluations.
+/// The creature at two scales and the sphere, 2,500 to 3,900 texels, in each medium. Measured at θ = 0.75: error 0.04–0.72 %, 99 % of the
+/// texels within 0.2–2.8 %, bias up to 0.07 %, 27–43 evaluations.
 #[test]
 fn groups_follow_all_pairs() {
     let bodies = [
@@ -102,7 +103,7 @@ fn groups_follow_all_pairs() {
     }
 }
 
-/// The error falls with the opening angle, and the work grows. Between θ = 1 and 0.5 the error fell 13 to 17 times.
+/// The error falls with the opening angle, and the work grows. Measured 0.17–0.26 at each step.
 #[test]
 fn a_smaller_angle_is_more_accurate() {
     let mut fixture = Fixture::new(&sphere_with(64), |d| (d.medium, d.mm_per_unit) = (Medium::SKIN1, 0.1));
@@ -162,12 +163,25 @@ fn lists_without_room_are_counted_and_cost_only_time() {
     }
 }
 
-/// One texel, a few, and counts that are no power of four, down to a level of receivers just wide enough.
+/// The first texels of a square of 20².
+fn scrap(texels: u32) -> Arc<Model> {
+    let mut model = Model::clone(&plane(10.0, 20));
+    model.atlas.texels.truncate(texels as usize);
+    model.atlas.pixels.iter_mut().filter(|texel| **texel >= texels).for_each(|texel| *texel = Atlas::EMPTY);
+    Arc::new(model)
+}
+
+/// One texel, a few, and counts that are no power of four, around the least that make a level of groups (4 · 63 + 1).
 #[test]
 fn small_bodies_follow_all_pairs() {
-    for size in [1, 2, 3, 5, 15, 16, 17, 23] {
-        let mut fixture = Fixture::new(&plane(10.0, size), |d| d.medium = Medium::SKIN1);
-        holds(close(&format!("square of {size}² texels"), compared(&mut fixture, USUAL)));
+    for texels in [1, 2, 3, 4, 5, 17, 64, 252, 253, 256, 300, 399] {
+        let mut fixture = Fixture::new(&scrap(texels), |d| d.medium = Medium::SKIN1);
+        let found = compared(&mut fixture, USUAL);
+        holds(close(&format!("{texels} texels"), found));
+        // A single texel is left to the tree, which does not count.
+        if texels > 1 {
+            holds(at_least(&format!("dual: {texels} texels: evaluations"), found.evaluations, 1.0));
+        }
     }
 }
 
