@@ -40,7 +40,8 @@ struct Dual {
 @group(0) @binding(6) var<storage, read_write> lists: Lists;
 @group(0) @binding(7) var kernel_table: texture_2d<f32>;
 
-// A second-order expansion errs more across a receiver than the averaged profile does across a source of the same size.
+// A second-order expansion errs more across a receiver than the averaged profile does across a source of the same size. At the same cost
+// a weight of 1.5 errs a fifth more, 2.5 the same.
 const RECEIVER_WEIGHT: f32 = 2.0;
 // A source that is larger than the receiver by this factor is opened first.
 const SOURCE_EXCESS: f32 = 1.4;

@@ -58,7 +58,7 @@ fn profile_jet(table: KernelTable, texels: texture_2d<f32>, r2: f32, s2: f32, fa
     let first = CELLS * 0.5 * mix(v[2] - v[0], v[3] - v[1], fx);
     let second = CELLS * CELLS * mix(v[2] - 2.0 * v[1] + v[0], v[3] - 2.0 * v[2] + v[1], fx);
     let value = exp(mix(v[1], v[2], fx));
-    return Jet(value, value * first / r2, value * (first * first + second - first) / (r2 * r2));
+    return Jet(value, value * first / r2, value * (first * first + second - first) / r2 / r2);
 }
 
 // Adds what one source sends to the receivers about a point `d` from it.

@@ -235,7 +235,7 @@ pub struct Outputs<'a> {
     /// Radiant exitance B of each texel, RGB; from [`Method::Dual`](crate::Method::Dual) with the number of kernel evaluations, where a
     /// group's are shared out among its texels.
     pub exitance: &'a wgpu::Buffer,
-    /// Only with [`Method::Dual`](crate::Method::Dual): its lists of open sources. The first word is how many words they
+    /// Once [`Method::Dual`](crate::Method::Dual) was used: its lists of open sources. The first word is how many words they
     /// would have filled, the second how many groups of receivers found no room. Those do not err, but take longer: their texels
     /// walk the tree on their own.
     pub lists: Option<&'a wgpu::Buffer>,

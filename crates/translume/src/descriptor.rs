@@ -18,7 +18,8 @@ pub struct BodyDescriptor<'a> {
     /// How the scatter sum is evaluated.
     pub method: Method,
     /// Memory of [`Method::Dual`] for open sources, in entries of four bytes per texel. What finds no room takes longer, but is not lost
-    /// ([`Outputs::lists`](crate::Outputs::lists) counts it).
+    /// ([`Outputs::lists`](crate::Outputs::lists) counts it); the same input then need not give the same bits. Bodies took 4 to 11 at
+    /// θ = 0.7 and more.
     pub list_entries: u32,
     /// Millimetres per world unit: 1000 for an engine that counts in metres. Finite, > 0.
     pub mm_per_unit: f32,

@@ -1,7 +1,7 @@
 //! Dual: the scatter sum with groups of texels at both ends, level by level from the coarsest receivers to the texels.
 //!
 //! reads  bounds and lamps of the tree, kernel table      writes  exitance per texel, linear RGB
-//! judge  `Method::AllPairs` on the same adapter                                        WGSL    `dual.wgsl`
+//! judge  `Method::AllPairs` on the same adapter          WGSL    `dual.wgsl`
 
 use crate::Error;
 use crate::buffers::Buffers;
@@ -11,7 +11,8 @@ use crate::stages::cluster::Tree;
 
 /// The coarsest level of receivers has at least this many nodes: fewer would not share enough to be worth a dispatch.
 const LEAST_RECEIVERS: u32 = 64;
-/// Opening angle of single texels over that of groups: they test the source's size alone.
+/// Opening angle of single texels over that of groups: they test the source's size alone. At θ = 0.8 a ratio of 0.51 raises the error of
+/// skin1 on the creature at 256² from 0.5 % to 1.0 % and saves a seventh of the time; 0.35 hardly gains.
 const LEAF_THETA: f32 = 0.4;
 /// Bytes in front of the lists.
 const LISTS_HEADER: u64 = 16;
@@ -41,9 +42,9 @@ fn start_level(tree: &Tree) -> u32 {
     tree.counts.iter().rposition(|count| *count >= LEAST_RECEIVERS).unwrap_or(0) as u32
 }
 
-/// Words for the lists.
+/// Words for the lists; a link has 28 bits to say where it leads.
 fn capacity(texels: u32, entries_per_texel: u32) -> u32 {
-    texels.saturating_mul(entries_per_texel).saturating_add(ROOT)
+    texels.saturating_mul(entries_per_texel).saturating_add(ROOT).min(1 << 28)
 }
 
 /// Bytes of the expansions of all receivers from the second level on.
