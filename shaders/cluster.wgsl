@@ -7,6 +7,11 @@ struct Level {
     // Where the children and the nodes of this level begin in `clusters`.
     child_offset: u32,
     node_offset: u32,
+    // Where the sources of this level, and its receivers, begin in `bounds`.
+    source_offset: u32,
+    receiver_offset: u32,
+    padding0: u32,
+    padding1: u32,
 }
 
 @group(0) @binding(0) var<uniform> level: Level;
@@ -14,6 +19,11 @@ struct Level {
 @group(0) @binding(2) var<storage, read> texel_normals: array<vec4f>;
 @group(0) @binding(3) var<storage, read> texel_irradiance: array<vec4f>;
 @group(0) @binding(4) var<storage, read_write> clusters: array<Cluster>;
+@group(0) @binding(5) var<storage, read_write> receivers: array<Receiver>;
+// Centres and sizes: first of all sources, from the texels up, dark ones with size 0; then of all receivers above the texels.
+@group(0) @binding(6) var<storage, read_write> bounds: array<vec4f>;
+// What the sources of `bounds` send, in their order.
+@group(0) @binding(7) var<storage, read_write> lamps: array<Lamp>;
 
 fn texel_cluster(index: u32) -> Cluster {
     let place = texel_positions[index];
@@ -25,10 +35,16 @@ fn from_texels(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) gro
     let node = item_index(group, groups, local);
     if node >= level.node_count { return; }
     var children: array<Cluster, 4>;
+    var receiving: array<Receiver, 4>;
     for (var k = 0u; k < 4u; k++) {
-        if node * 4u + k < level.child_count { children[k] = texel_cluster(node * 4u + k); }
+        if node * 4u + k < level.child_count {
+            children[k] = texel_cluster(node * 4u + k);
+            receiving[k] = Receiver(children[k].centroid, 0.0, 0.0, 1u, 0u, 0u);
+            bounds[node * 4u + k] = vec4f(children[k].centroid, select(0.0, NO_SIZE, any(children[k].power > vec3f(0.0))));
+            lamps[node * 4u + k] = Lamp(children[k].power, NEIGHBOUR_NARROWING * children[k].spread, children[k].normal, 0u);
+        }
     }
-    clusters[level.node_offset + node] = merge(&children, min(level.child_count - node * 4u, 4u));
+    store(node, merge(&children, min(level.child_count - node * 4u, 4u)), merge_receivers(&receiving));
 }
 
 @compute @workgroup_size(64)
@@ -36,10 +52,23 @@ fn from_clusters(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) g
     let node = item_index(group, groups, local);
     if node >= level.node_count { return; }
     var children: array<Cluster, 4>;
+    var receiving: array<Receiver, 4>;
     for (var k = 0u; k < 4u; k++) {
-        if node * 4u + k < level.child_count { children[k] = clusters[level.child_offset + node * 4u + k]; }
+        if node * 4u + k < level.child_count {
+            children[k] = clusters[level.child_offset + node * 4u + k];
+            receiving[k] = receivers[level.child_offset + node * 4u + k];
+        }
     }
-    clusters[level.node_offset + node] = merge(&children, min(level.child_count - node * 4u, 4u));
+    store(node, merge(&children, min(level.child_count - node * 4u, 4u)), merge_receivers(&receiving));
+}
+
+fn store(node: u32, cluster: Cluster, receiver: Receiver) {
+    clusters[level.node_offset + node] = cluster;
+    receivers[level.node_offset + node] = receiver;
+    let size = select(0.0, max(size_of(cluster.spread, cluster.radius), NO_SIZE), any(cluster.power > vec3f(0.0)));
+    bounds[level.source_offset + node] = vec4f(cluster.centroid, size);
+    lamps[level.source_offset + node] = Lamp(cluster.power, cluster.spread, cluster.normal, 0u);
+    bounds[level.receiver_offset + node] = vec4f(receiver.centre, size_of(receiver.spread, receiver.radius));
 }
 
 // Children weigh by their power; where none has any, by area; where none has that either, equally.
@@ -77,4 +106,22 @@ fn merge(children: ptr<function, array<Cluster, 4>>, count: u32) -> Cluster {
     let normal_squared = dot(normal, normal);
     normal *= select(0.0, inverseSqrt(max(normal_squared, 1e-30)), normal_squared > 1e-12 * sum * sum);
     return Cluster(centroid, sqrt(spread_squared), power, radius, normal, area);
+}
+
+// Children that are not there have no texels.
+fn merge_receivers(children: ptr<function, array<Receiver, 4>>) -> Receiver {
+    var texels = 0u;
+    for (var k = 0u; k < 4u; k++) { texels += (*children)[k].texels; }
+    var centre = vec3f(0.0);
+    for (var k = 0u; k < 4u; k++) { centre += (*children)[k].centre * (f32((*children)[k].texels) / f32(texels)); }
+    var spread_squared = 0.0;
+    var radius = 0.0;
+    for (var k = 0u; k < 4u; k++) {
+        if (*children)[k].texels == 0u { continue; }
+        let offset = (*children)[k].centre - centre;
+        let spread = (*children)[k].spread;
+        spread_squared += f32((*children)[k].texels) / f32(texels) * (spread * spread + dot(offset, offset));
+        radius = max(radius, length(offset) + (*children)[k].radius);
+    }
+    return Receiver(centre, sqrt(spread_squared), radius, texels, 0u, 0u);
 }

@@ -58,7 +58,19 @@ pub const SCATTER: Shader = shader!(
     "shared/dispatch.wgsl",
     "shared/cluster.wgsl",
     "shared/kernel_table.wgsl",
+    "shared/source.wgsl",
     "scatter.wgsl"
+);
+/// The same with groups of texels at both ends.
+pub const DUAL: Shader = shader!(
+    "dual",
+    "shared/dispatch.wgsl",
+    "shared/cluster.wgsl",
+    "shared/kernel_table.wgsl",
+    "shared/source.wgsl",
+    "shared/expansion.wgsl",
+    "shared/lists.wgsl",
+    "dual.wgsl"
 );
 /// Dense texels → texture.
 pub const RESOLVE: Shader = shader!("resolve", "resolve.wgsl");
@@ -76,8 +88,8 @@ pub const COMPOSITE: Shader = shader!(
 );
 
 /// Every module, in the order light flows through them.
-pub const ALL: [Shader; 9] =
-    [DEFORM, NORMALS, VISIBILITY, SHADOW, GATHER, CLUSTER, SCATTER, RESOLVE, COMPOSITE];
+pub const ALL: [Shader; 10] =
+    [DEFORM, NORMALS, VISIBILITY, SHADOW, GATHER, CLUSTER, SCATTER, DUAL, RESOLVE, COMPOSITE];
 
 /// WGSL functions for a host's own material: `translume_exitance(texture, uv)` samples radiant exitance B, and
 /// `fresnel_transmittance(eta, cosine)` weighs what leaves towards the eye: L = F_t·B/π.

@@ -70,12 +70,12 @@ pub struct Render {
     /// Diffuse profile: dipole (the paper's formula to the letter) or dipole-normalised.
     #[arg(long, value_name = "NAME", default_value = "dipole-normalised")]
     pub profile: String,
-    /// How the scatter sum is evaluated: tree, or all-pairs (exact and slow).
-    #[arg(long, value_name = "NAME", default_value = "tree")]
+    /// How the scatter sum is evaluated: dual (groups of texels at both ends), tree (each texel by itself), or all-pairs (exact and slow).
+    #[arg(long, value_name = "NAME", default_value = "dual")]
     pub method: String,
-    /// Opening angle of the tree; smaller is more accurate.
-    #[arg(long, value_name = "X", default_value_t = 0.4)]
-    pub theta: f32,
+    /// Opening angle of dual (by default 0.75) or tree (0.4); smaller is more accurate.
+    #[arg(long, value_name = "X")]
+    pub theta: Option<f32>,
     /// Width of a shadow map in texels.
     #[arg(long, value_name = "N", default_value_t = 2048)]
     pub shadow: u32,

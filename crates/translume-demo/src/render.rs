@@ -118,11 +118,12 @@ pub fn run(arguments: &Render) -> Result<(), Error> {
 
 fn method(arguments: &Render) -> Result<Method, Error> {
     match arguments.method.as_str() {
-        "tree" => Ok(Method::Tree { theta: arguments.theta }),
+        "dual" => Ok(arguments.theta.map_or(Method::default(), |theta| Method::Dual { theta })),
+        "tree" => Ok(Method::Tree { theta: arguments.theta.unwrap_or(0.4) }),
         "all-pairs" => Ok(Method::AllPairs),
         other => Err(Error::Option {
             option: "--method",
-            problem: format!("no method is called \"{other}\"; known are tree, all-pairs"),
+            problem: format!("no method is called \"{other}\"; known are dual, tree, all-pairs"),
         }),
     }
 }

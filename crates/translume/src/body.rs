@@ -15,6 +15,7 @@ use crate::shadow_view::{Subject, View};
 use crate::stages::cluster::Tree;
 use crate::stages::deform::DeformGroups;
 use crate::stages::gather::Kinds;
+use crate::stages::scatter::dual::{self, DualMemory};
 use crate::stages::scatter::{Method, Scatter};
 use crate::stages::shadow::DepthMaps;
 use crate::stages::visibility::SkyMemory;
@@ -42,6 +43,9 @@ pub struct Body {
     medium: Medium,
     profile: Profile,
     method: Method,
+    list_entries: u32,
+    /// Made for the first frame whose method needs it.
+    dual: Option<DualMemory>,
     model: Mat4,
     /// [`Profile::exit_scale`] of profile and medium: an integral too long for every picture.
     pub(crate) exit_scale: f32,
@@ -87,6 +91,9 @@ impl Body {
         extent.check(&device.limits())?;
 
         let tree = Tree::new(extent.texels);
+        if matches!(method, Method::Dual { .. }) {
+            dual::check(&tree, descriptor.list_entries, &device.limits())?;
+        }
         let buffers = Buffers::new(device, mesh, atlas, &tree);
         let exitance = stages.resolve.texture(device, atlas.size);
         let exitance_view = exitance.create_view(&wgpu::TextureViewDescriptor::default());
@@ -112,6 +119,8 @@ impl Body {
             medium,
             profile,
             method,
+            list_entries: descriptor.list_entries,
+            dual: None,
             model: Mat4::IDENTITY,
             exit_scale: profile.exit_scale(medium.ior),
             pose: Pose::rest(&extent),
@@ -216,7 +225,7 @@ impl Body {
         self.never_prepared = false;
         self.surface_stale = false;
         self.shadows_stale = false;
-        self.refresh_kernel(queue, frame::diagonal(&corners));
+        self.refresh_kernel(device, queue, frame::diagonal(&corners));
         Ok(())
     }
 
@@ -269,9 +278,12 @@ impl Body {
     /// Changes how the scatter sum is evaluated; the next frame scatters anew.
     ///
     /// # Errors
-    /// [`Error::Frame`] for an opening angle outside its range.
+    /// [`Error::Frame`] for an opening angle outside its range, [`Error::Limit`] where the device cannot hold what the method remembers.
     pub fn set_method(&mut self, method: Method) -> Result<(), Error> {
         method.validate()?;
+        if matches!(method, Method::Dual { .. }) {
+            dual::check(&self.tree, self.list_entries, &self.limits)?;
+        }
         self.scatter_stale |= method != self.method;
         self.method = method;
         Ok(())
@@ -305,7 +317,8 @@ impl Body {
     /// What the stages wrote, for copies and read-back.
     #[must_use]
     pub fn outputs(&self) -> Outputs<'_> {
-        self.buffers.outputs(&self.depth_maps)
+        let lists = self.dual.as_ref().map(|memory| &memory.lists);
+        self.buffers.outputs(&self.depth_maps, lists)
     }
 
     fn upload_pose(&self, queue: &wgpu::Queue, to_mm: Mat4) {
@@ -355,13 +368,22 @@ impl Body {
     }
 
     /// Makes the kernel table anew where the medium changed or the body outgrew it.
-    fn refresh_kernel(&mut self, queue: &wgpu::Queue, diagonal: f32) {
+    fn refresh_kernel(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, diagonal: f32) {
         if !self.scatter_stale && self.kernel.fits(diagonal) {
             return;
         }
         let channels = [0, 1, 2].map(|channel| Dipole::new(&self.medium, channel));
         let table = self.kernel.write(queue, &channels, diagonal);
-        let uniforms = Scatter::uniforms(Scatter::layout(table, &channels, &self.tree, self.method));
+        let layout = Scatter::layout(table, &channels, &self.tree, self.method);
+        // A single texel has no tree.
+        if let (Method::Dual { theta }, 1..) = (self.method, self.tree.top_level()) {
+            let (stage, tree) = (&self.stages.scatter.dual, &self.tree);
+            let memory = self.dual.get_or_insert_with(|| {
+                stage.memory(device, &self.buffers, &self.kernel.view, tree, self.list_entries)
+            });
+            memory.write(queue, &layout, &self.tree, theta);
+        }
+        let uniforms = Scatter::uniforms(layout);
         queue.write_buffer(&self.buffers.scatter_uniforms, 0, &uniforms);
         self.pending.insert(StageSet::from_stage_on(Stage::Scatter));
         self.scatter_stale = false;

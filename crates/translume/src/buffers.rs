@@ -3,7 +3,8 @@
 use crate::Error;
 use crate::gpu::{self, UNIFORM_STRIDE};
 use crate::layout::{
-    AtlasVertexLayout, Cluster, DeformLayout, GatherLayout, InfluenceLayout, LightPointLayout, TexelLayout,
+    AtlasVertexLayout, Cluster, DeformLayout, GatherLayout, InfluenceLayout, LampLayout, LightPointLayout,
+    ReceiverLayout, TexelLayout,
 };
 use crate::light_points::{LightPoint, light_points};
 use crate::stages::cluster::Tree;
@@ -33,6 +34,9 @@ pub(crate) struct Buffers {
     pub irradiance: wgpu::Buffer,
     pub cluster_uniforms: wgpu::Buffer,
     pub clusters: wgpu::Buffer,
+    pub receivers: wgpu::Buffer,
+    pub bounds: wgpu::Buffer,
+    pub lamps: wgpu::Buffer,
     pub scatter_uniforms: wgpu::Buffer,
     pub exitance: wgpu::Buffer,
     pub pixels: wgpu::Buffer,
@@ -177,8 +181,16 @@ impl Buffers {
             clusters: gpu::buffer(
                 device,
                 "clusters",
-                u64::from(tree.clusters()) * size_of::<Cluster>() as u64,
+                // One at least: WGSL's array has elements of this size.
+                u64::from(tree.clusters().max(1)) * size_of::<Cluster>() as u64,
             ),
+            receivers: gpu::buffer(
+                device,
+                "receivers",
+                u64::from(tree.clusters()) * size_of::<ReceiverLayout>() as u64,
+            ),
+            bounds: vectors("bounds", (tree.sources() + tree.clusters()) as usize),
+            lamps: gpu::buffer(device, "lamps", u64::from(tree.sources()) * size_of::<LampLayout>() as u64),
             scatter_uniforms: gpu::uniform_buffer(device, "scatter", UNIFORM_STRIDE * u64::from(dispatches)),
             exitance: vectors("exitance", atlas.texels.len()),
             pixels: storage("pixels", &atlas.pixels),
@@ -187,7 +199,7 @@ impl Buffers {
         }
     }
 
-    pub fn outputs<'a>(&'a self, depth_maps: &'a DepthMaps) -> Outputs<'a> {
+    pub fn outputs<'a>(&'a self, depth_maps: &'a DepthMaps, lists: Option<&'a wgpu::Buffer>) -> Outputs<'a> {
         Outputs {
             positions: &self.positions,
             normals: &self.normals,
@@ -197,6 +209,7 @@ impl Buffers {
             irradiance: &self.irradiance,
             clusters: &self.clusters,
             exitance: &self.exitance,
+            lists,
         }
     }
 }
@@ -219,8 +232,13 @@ pub struct Outputs<'a> {
     pub irradiance: &'a wgpu::Buffer,
     /// Clusters of every level above the texels.
     pub clusters: &'a wgpu::Buffer,
-    /// Radiant exitance B of each texel, RGB.
+    /// Radiant exitance B of each texel, RGB; from [`Method::Dual`](crate::Method::Dual) with the number of kernel evaluations, where a
+    /// group's are shared out among its texels.
     pub exitance: &'a wgpu::Buffer,
+    /// Once [`Method::Dual`](crate::Method::Dual) was used: its lists of open sources. The first word is how many words they
+    /// would have filled, the second how many groups of receivers found no room. Those do not err, but take longer: their texels
+    /// walk the tree on their own.
+    pub lists: Option<&'a wgpu::Buffer>,
 }
 
 fn texel_layouts(mesh: &Mesh, atlas: &Atlas) -> Vec<TexelLayout> {

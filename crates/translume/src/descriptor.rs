@@ -17,6 +17,10 @@ pub struct BodyDescriptor<'a> {
     pub profile: Profile,
     /// How the scatter sum is evaluated.
     pub method: Method,
+    /// Memory of [`Method::Dual`] for open sources, in entries of four bytes per texel. What finds no room takes longer, but is not lost
+    /// ([`Outputs::lists`](crate::Outputs::lists) counts it); the same input then need not give the same bits. Bodies took 4 to 11 at
+    /// θ = 0.7 and more.
+    pub list_entries: u32,
     /// Millimetres per world unit: 1000 for an engine that counts in metres. Finite, > 0.
     pub mm_per_unit: f32,
     /// Whether each triangle keeps its own normal instead of the smooth vertex normals.
@@ -26,7 +30,7 @@ pub struct BodyDescriptor<'a> {
 }
 
 impl<'a> BodyDescriptor<'a> {
-    /// Defaults for everything but the shape: marble, normalised dipole, tree, metres, smooth normals.
+    /// Defaults for everything but the shape: marble, normalised dipole, dual, metres, smooth normals.
     #[must_use]
     pub fn new(mesh: &'a Mesh, atlas: &'a Atlas) -> Self {
         Self {
@@ -35,6 +39,7 @@ impl<'a> BodyDescriptor<'a> {
             medium: Medium::default(),
             profile: Profile::default(),
             method: Method::default(),
+            list_entries: 12,
             mm_per_unit: 1000.0,
             flat_normals: false,
             shadows: ShadowOptions::default(),

@@ -164,6 +164,48 @@ pub(crate) struct LevelLayout {
     pub node_count: u32,
     pub child_offset: u32,
     pub node_offset: u32,
+    pub source_offset: u32,
+    pub receiver_offset: u32,
+    pub padding: [u32; 2],
+}
+
+/// A texel or a group of them seen as a source whose place is known.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub(crate) struct LampLayout {
+    pub power: [f32; 3],
+    pub spread: f32,
+    pub normal: [f32; 3],
+    pub padding: u32,
+}
+
+/// A group of texels seen as one receiver.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub(crate) struct ReceiverLayout {
+    pub centre: [f32; 3],
+    pub spread: f32,
+    pub radius: f32,
+    pub texels: u32,
+    pub padding: [u32; 2],
+}
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub(crate) struct DualLayout {
+    pub table: KernelTableLayout,
+    pub texel_count: u32,
+    pub level: u32,
+    pub start_level: u32,
+    pub top_level: u32,
+    pub theta_squared: f32,
+    pub leaf_theta_squared: f32,
+    pub z_r_squared: f32,
+    pub capacity: u32,
+    pub first_receiver: u32,
+    pub padding: [u32; 3],
+    pub offsets: [[u32; 4]; 4],
+    pub sources: [[u32; 4]; 4],
 }
 
 /// A group of texels seen as one source. Lengths in mm. Mirrors `Cluster` in `shared/cluster.wgsl`.
@@ -321,7 +363,12 @@ mod tests {
         );
         check!(GATHER, "Texel", TexelLayout, [triangle, barycentric_1, barycentric_2, area_ratio, points]);
         check!(GATHER, "LightPoint", LightPointLayout, [triangle, weights]);
-        check!(CLUSTER, "Level", LevelLayout, [child_count, node_count, child_offset, node_offset]);
+        check!(
+            CLUSTER,
+            "Level",
+            LevelLayout,
+            [child_count, node_count, child_offset, node_offset, source_offset, receiver_offset]
+        );
         check!(CLUSTER, "Cluster", Cluster, [centroid, spread, power, radius, normal, area]);
         check!(SCATTER, "KernelTable", KernelTableLayout, [least_r2, least_s2, columns, rows]);
         check!(
@@ -329,6 +376,31 @@ mod tests {
             "Scatter",
             ScatterLayout,
             [table, texel_count, first_source, source_count, top_level, theta_squared, z_r_squared, offsets]
+        );
+        assert_eq!(
+            u64::from(naga_layout(translume_shaders::DUAL.source, "Expansion").1),
+            crate::stages::scatter::dual::EXPANSION
+        );
+        check!(DUAL, "Lamp", LampLayout, [power, spread, normal]);
+        check!(CLUSTER, "Receiver", ReceiverLayout, [centre, spread, radius, texels]);
+        check!(
+            DUAL,
+            "Dual",
+            DualLayout,
+            [
+                table,
+                texel_count,
+                level,
+                start_level,
+                top_level,
+                theta_squared,
+                leaf_theta_squared,
+                z_r_squared,
+                capacity,
+                first_receiver,
+                offsets,
+                sources
+            ]
         );
         let (members, span) = naga_layout(translume_shaders::COMPOSITE.source, "Composite");
         assert_eq!(members[1], ("eye".to_owned(), offset_of!(CompositeLayout, eye) as u32));

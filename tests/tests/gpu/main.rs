@@ -10,6 +10,7 @@ mod closure;
 mod cluster;
 mod composite;
 mod deform;
+mod dual;
 mod errors;
 mod furnace;
 mod gather;

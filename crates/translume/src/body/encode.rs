@@ -1,10 +1,10 @@
 //! Recording the stages of a frame.
 
 use super::Body;
-use crate::Work;
 use crate::gpu::Pass;
 use crate::stages::Stage;
 use crate::stages::shadow::ShadowView;
+use crate::{Method, Work};
 use glam::{Mat4, Vec3};
 
 impl Body {
@@ -101,7 +101,12 @@ impl Body {
         }
         if pending.contains(Stage::Scatter) {
             let mut pass = Pass::begin(encoder, "scatter", &mut work);
-            stages.scatter.encode(&mut pass, &self.scatter_group, self.method, texels);
+            match (&self.dual, self.method) {
+                (Some(memory), Method::Dual { .. }) => {
+                    stages.scatter.dual.encode(&mut pass, memory, &self.tree);
+                }
+                _ => stages.scatter.encode(&mut pass, &self.scatter_group, self.method, texels),
+            }
         }
         if pending.contains(Stage::Resolve) {
             stages.resolve.encode(

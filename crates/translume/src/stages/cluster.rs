@@ -20,6 +20,8 @@ pub(crate) struct Tree {
     pub counts: Vec<u32>,
     /// First entry of each level in the buffer of clusters; level 0 is not in it.
     pub offsets: Vec<u32>,
+    /// First entry of each level among the sources in the buffer of bounds. Every node has four children there, some of them dark.
+    pub source_offsets: Vec<u32>,
 }
 
 impl Tree {
@@ -34,12 +36,21 @@ impl Tree {
             offsets.push(total);
             total += count;
         }
-        Self { counts, offsets }
+        let mut source_offsets = vec![0];
+        for (level, count) in counts.iter().enumerate().skip(1) {
+            source_offsets.push(source_offsets[level - 1] + 4 * count);
+        }
+        Self { counts, offsets, source_offsets }
     }
 
     /// Entries of the buffer of clusters.
     pub fn clusters(&self) -> u32 {
         self.counts.iter().skip(1).sum()
+    }
+
+    /// Entries of the sources in the buffer of bounds; those of the receivers follow.
+    pub fn sources(&self) -> u32 {
+        self.source_offsets.last().map_or(0, |last| last + 1)
     }
 
     pub fn top_level(&self) -> u32 {
@@ -56,6 +67,9 @@ impl Tree {
                 node_count: self.counts[level],
                 child_offset: self.offsets[level - 1],
                 node_offset: self.offsets[level],
+                source_offset: self.source_offsets[level],
+                receiver_offset: self.sources() + self.offsets[level],
+                padding: [0; 2],
             };
             let at = stride * (level - 1);
             bytes[at..at + size_of::<LevelLayout>()].copy_from_slice(bytemuck::bytes_of(&uniform));
@@ -66,7 +80,7 @@ impl Tree {
 
 impl ClusterStage {
     pub fn new(device: &wgpu::Device) -> Self {
-        let types = [UNIFORM_ARRAY, READ, READ, READ, WRITE];
+        let types = [UNIFORM_ARRAY, READ, READ, READ, WRITE, WRITE, WRITE, WRITE];
         let layout = gpu::layout(device, "cluster", wgpu::ShaderStages::COMPUTE, &types);
         let module = gpu::module(device, translume_shaders::CLUSTER);
         Self {
@@ -83,6 +97,9 @@ impl ClusterStage {
             buffers.texel_normals.as_entire_binding(),
             buffers.irradiance.as_entire_binding(),
             buffers.clusters.as_entire_binding(),
+            buffers.receivers.as_entire_binding(),
+            buffers.bounds.as_entire_binding(),
+            buffers.lamps.as_entire_binding(),
         ];
         gpu::bind(device, "cluster", &self.layout, &resources)
     }

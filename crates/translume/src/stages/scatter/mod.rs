@@ -3,6 +3,8 @@
 //! reads  texel positions, normals, irradiance, clusters, kernel table      writes  exitance per texel, linear RGB
 //! twin   `translume_reference::scatter`                                    WGSL    `scatter.wgsl`
 
+pub(crate) mod dual;
+
 use crate::Error;
 use crate::buffers::Buffers;
 use crate::gpu::{self, FLOAT_TEXTURE, Pass, READ, UNIFORM_ARRAY, UNIFORM_STRIDE, WRITE};
@@ -23,12 +25,20 @@ pub enum Method {
         /// Opening angle, 0.05..=2. Smaller is more accurate: the error falls roughly with its square.
         theta: f32,
     },
+    /// Groups of texels at both ends: far light is worked out once for all texels of a group and spread over them to second order. Takes a
+    /// source as soon as its radius and twice the receivers' are together below `theta`·√(distance² + z_r²), or for a single
+    /// texel as soon as the source's radius is below 0.4 of that.
+    Dual {
+        /// Opening angle, 0.05..=2; 0.75 is about as accurate as the tree at 0.4. The error falls roughly with its fourth power. Below
+        /// 0.65 give the lists more room ([`BodyDescriptor::list_entries`](crate::BodyDescriptor::list_entries)).
+        theta: f32,
+    },
 }
 
 impl Default for Method {
-    /// The tree at θ = 0.4.
+    /// Dual at θ = 0.75: as accurate as the tree at 0.4, and six to eight times as fast from 40,000 texels on.
     fn default() -> Self {
-        Self::Tree { theta: 0.4 }
+        Self::Dual { theta: 0.75 }
     }
 }
 
@@ -36,10 +46,12 @@ impl Method {
     /// Checks the opening angle.
     pub(crate) fn validate(self) -> Result<(), Error> {
         match self {
-            Self::Tree { theta } if !(0.05..=2.0).contains(&theta) => Err(Error::Frame {
-                problem: format!("opening angle {theta}"),
-                remedy: "give θ between 0.05 and 2, or use all pairs",
-            }),
+            Self::Tree { theta } | Self::Dual { theta } if !(0.05..=2.0).contains(&theta) => {
+                Err(Error::Frame {
+                    problem: format!("opening angle {theta}"),
+                    remedy: "give θ between 0.05 and 2, or use all pairs",
+                })
+            }
             _ => Ok(()),
         }
     }
@@ -53,6 +65,7 @@ pub(crate) struct Scatter {
     layout: wgpu::BindGroupLayout,
     all_pairs: wgpu::ComputePipeline,
     tree: wgpu::ComputePipeline,
+    pub dual: dual::Dual,
 }
 
 impl Scatter {
@@ -63,6 +76,7 @@ impl Scatter {
         Self {
             all_pairs: gpu::compute_pipeline(device, &layout, &module, "all_pairs"),
             tree: gpu::compute_pipeline(device, &layout, &module, "tree"),
+            dual: dual::Dual::new(device),
             layout,
         }
     }
@@ -93,7 +107,7 @@ impl Scatter {
         method: Method,
     ) -> ScatterLayout {
         let theta = match method {
-            Method::Tree { theta } => theta,
+            Method::Tree { theta } | Method::Dual { theta } => theta,
             Method::AllPairs => 0.0,
         };
         let scattering = channels.iter().filter(|dipole| dipole.total() > 0.0);
@@ -138,7 +152,8 @@ impl Scatter {
                     pass.dispatch(texels);
                 }
             }
-            Method::Tree { .. } => {
+            // `dual` has its own; it comes here for a body of a single texel.
+            Method::Tree { .. } | Method::Dual { .. } => {
                 pass.set_pipeline(&self.tree);
                 pass.set_bind_group(group, &[0]);
                 pass.dispatch(texels);

@@ -1,0 +1,268 @@
+// Dual: irradiance → radiant exitance with groups of texels at both ends. Level by level, every receiver takes over the sources its
+// parent left open. A source that is small seen from the receiver, and the receiver from it, is added to the receiver's expansion;
+// otherwise the larger of the two is opened, the source at once, the receiver by leaving the source to its children.
+
+struct Dual {
+    table: KernelTable,
+    texel_count: u32,
+    // Level of the receivers of this dispatch.
+    level: u32,
+    // Level of the first receivers, which take over the root.
+    start_level: u32,
+    top_level: u32,
+    // Opening angle: accepted when source size + RECEIVER_WEIGHT·receiver size < theta·√(distance² + z_r²).
+    theta_squared: f32,
+    // The same for single texels, which have no size.
+    leaf_theta_squared: f32,
+    // Square of the shortest mean free path of the three channels, mm².
+    z_r_squared: f32,
+    // Words there are in `lists`.
+    capacity: u32,
+    // Where receivers begin in `bounds`.
+    first_receiver: u32,
+    padding0: u32,
+    padding1: u32,
+    padding2: u32,
+    // Where each level above the texels begins among the receivers.
+    offsets: array<vec4u, 4>,
+    // Where each level begins among the sources in `bounds`.
+    sources: array<vec4u, 4>,
+}
+
+@group(0) @binding(0) var<uniform> dual: Dual;
+@group(0) @binding(1) var<storage, read> bounds: array<vec4f>;
+@group(0) @binding(2) var<storage, read> lamps: array<Lamp>;
+@group(0) @binding(3) var<storage, read_write> exitance: array<vec4f>;
+// Of receivers from the second level on; those of the first go straight to `exitance`.
+@group(0) @binding(4) var<storage, read_write> expansions: array<Expansion>;
+// Where each receiver's open sources are in `lists`.
+@group(0) @binding(5) var<storage, read_write> heads: array<u32>;
+@group(0) @binding(6) var<storage, read_write> lists: Lists;
+@group(0) @binding(7) var kernel_table: texture_2d<f32>;
+
+// A second-order expansion errs more across a receiver than the averaged profile does across a source of the same size. At the same cost
+// a weight of 1.5 errs a fifth more, 2.5 the same.
+const RECEIVER_WEIGHT: f32 = 2.0;
+// A source that is larger than the receiver by this factor is opened first.
+const SOURCE_EXCESS: f32 = 1.4;
+
+// Sources an invocation accepts before it evaluates the kernel for all of them: a wave whose invocations walk differently far still
+// evaluates together.
+const BATCH: u32 = 16u;
+// Sources it leaves to its children before it writes them down.
+const RUN: u32 = 15u;
+// Beside the head of a list of a node of the first level: the list is an ancestor's.
+const UNDECIDED: u32 = 0x80000000u;
+const NOTED: u32 = 32u;
+// Both kinds, from either end.
+var<workgroup> notes: array<u32, 2048>;
+
+fn note(place: u32, local: u32) -> u32 {
+    return place * 64u + local;
+}
+
+// A walk through the subtrees of a list's nodes.
+struct Walk {
+    // The next word of the list.
+    cursor: u32,
+    // Level of the listed node whose subtree is walked, and where in it the walk is.
+    top: u32,
+    level: u32,
+    node: u32,
+    // Whether the subtree is done, and whether the list is.
+    done: bool,
+    ended: bool,
+}
+
+fn walk(head: u32) -> Walk {
+    return Walk(head, 0u, 0u, 0u, true, false);
+}
+
+// To the next word of the list.
+fn turn_over(w: ptr<function, Walk>) {
+    let word = lists.words[(*w).cursor];
+    (*w).top = packed_level(word);
+    (*w).level = (*w).top;
+    (*w).node = packed_node(word);
+    (*w).done = (*w).top == LINK;
+    (*w).cursor = select((*w).cursor - 1u, (*w).node, (*w).done);
+    (*w).ended = (*w).cursor == 0u && (*w).done;
+}
+
+fn open(w: ptr<function, Walk>) {
+    (*w).level -= 1u;
+    (*w).node *= 4u;
+}
+
+// To the next sibling, or where there is none to that of the nearest ancestor who has one. Levels are padded to four children.
+fn pass_by(w: ptr<function, Walk>) {
+    (*w).node += 1u;
+    let up = min(countTrailingZeros((*w).node) / 2u, (*w).top - (*w).level);
+    (*w).node >>= 2u * up;
+    (*w).level += up;
+    (*w).done = (*w).level == (*w).top;
+}
+
+fn source_index(level: u32, node: u32) -> u32 {
+    return dual.sources[level / 4u][level % 4u] + node;
+}
+
+fn receiver_index(level: u32, node: u32) -> u32 {
+    return dual.offsets[level / 4u][level % 4u] + node;
+}
+
+@compute @workgroup_size(1)
+fn start() {
+    atomicStore(&lists.taken, ROOT_WORDS);
+    atomicStore(&lists.overflows, 0u);
+    lists.words[0] = packed(LINK, 0u);
+    lists.words[1] = packed(LINK, 0u);
+    lists.words[ROOT_HEAD] = packed(dual.top_level, 0u);
+}
+
+// Writes down the sources left to the children; false where there is no room.
+fn write_run(head: ptr<function, u32>, count: u32, local: u32) -> bool {
+    let run = atomicAdd(&lists.taken, count + 1u);
+    if run + count >= dual.capacity { return false; }
+    lists.words[run] = packed(LINK, *head);
+    for (var k = 0u; k < count; k++) { lists.words[run + 1u + k] = notes[note(NOTED - 1u - k, local)]; }
+    *head = run + count;
+    return true;
+}
+
+// Receivers that are groups of texels.
+@compute @workgroup_size(64)
+fn inner(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_index) local: u32) {
+    let node = item_index(group, groups, local);
+    if node >= level_count(dual.texel_count, dual.level) { return; }
+    let own = receiver_index(dual.level, node);
+    let receiver = bounds[dual.first_receiver + own].xyz;
+    let size = bounds[dual.first_receiver + own].w;
+    var before: Expansion;
+    var head = ROOT_HEAD;
+    if dual.level < dual.start_level {
+        let parent = receiver_index(dual.level + 1u, node / 4u);
+        before = moved(expansions[parent - dual.offsets[0][2]], receiver - bounds[dual.first_receiver + parent].xyz);
+        head = heads[parent];
+    }
+    var e = before;
+    var w = walk(head);
+    // The first level knows what its texels will want, who are too close together to differ.
+    let decides = dual.level == 1u;
+    var own_head = 0u;
+    var left = 0u;
+    var room = true;
+    var evaluated = 0u;
+    while !w.ended && room {
+        var count = 0u;
+        while count < BATCH && left < RUN && !w.ended {
+            if w.done { turn_over(&w); }
+            if w.done { continue; }
+            let index = source_index(w.level, w.node);
+            let seen = bounds[index];
+            let offset = receiver - seen.xyz;
+            let needed = seen.w + RECEIVER_WEIGHT * size;
+            let sight = dot(offset, offset) + dual.z_r_squared;
+            let small = needed * needed < dual.theta_squared * sight;
+            let limit = select(SOURCE_EXCESS * SOURCE_EXCESS * size * size, dual.leaf_theta_squared * sight, decides);
+            if seen.w * seen.w > limit && w.level > 0u && !small {
+                open(&w);
+                continue;
+            }
+            if seen.w > 0.0 {
+                notes[note(select(NOTED - 1u - left, count, small), local)] = select(packed(w.level, w.node), index, small || decides);
+                count += select(0u, 1u, small);
+                left += select(1u, 0u, small);
+            }
+            pass_by(&w);
+        }
+        if left == RUN || w.ended && left > 0u {
+            room = write_run(&own_head, left, local);
+            left = 0u;
+        }
+        for (var k = 0u; k < count; k++) {
+            let index = notes[note(k, local)];
+            let lamp = lamps[index];
+            let d = receiver - bounds[index].xyz;
+            let distance_squared = dot(d, d);
+            let along = dot(d, lamp.normal);
+            let facing = select(0.0, along * along / distance_squared, distance_squared > 0.0);
+            // Derivatives by r² lose their digits where r hardly counts.
+            let r2 = max(distance_squared, max(0.01 * size * size, dual.table.least_r2));
+            add(&e, lamp.power, profile_jet(dual.table, kernel_table, r2, lamp.spread * lamp.spread, min(facing, 1.0)), d);
+        }
+        evaluated += count;
+    }
+    let texels = min(1u << (2u * dual.level), dual.texel_count - (node << (2u * dual.level)));
+    e.evaluations += f32(evaluated) / f32(texels);
+    // Without room for a list nothing is resolved here: the children take over what the parent left.
+    if !room {
+        atomicAdd(&lists.overflows, 1u);
+        e = before;
+        own_head = head | select(0u, UNDECIDED, decides);
+    }
+    heads[own] = own_head;
+    if dual.level > 1u {
+        expansions[own - dual.offsets[0][2]] = e;
+        return;
+    }
+    for (var k = 0u; k < texels; k++) {
+        exitance[node * 4u + k] = vec4f(moved(e, bounds[node * 4u + k].xyz - receiver).value, e.evaluations);
+    }
+}
+
+// Receivers that are single texels.
+@compute @workgroup_size(64)
+fn leaf(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_index) local: u32) {
+    let index = item_index(group, groups, local);
+    if index >= dual.texel_count { return; }
+    let receiver = bounds[index].xyz;
+    var sum = vec4f(0.0);
+    var head = ROOT_HEAD | UNDECIDED;
+    if dual.start_level > 0u {
+        sum = exitance[index];
+        head = heads[index / 4u];
+    }
+    if (head & UNDECIDED) == 0u {
+        while head != 0u {
+            let word = lists.words[head];
+            head -= 1u;
+            if packed_level(word) == LINK {
+                head = packed_node(word);
+                continue;
+            }
+            sum += sent(word, index, receiver);
+        }
+    }
+    var w = walk(packed_node(head));
+    w.ended = head == 0u;
+    while !w.ended {
+        var count = 0u;
+        while count < BATCH && !w.ended {
+            if w.done { turn_over(&w); }
+            if w.done { continue; }
+            let at = source_index(w.level, w.node);
+            let seen = bounds[at];
+            let offset = receiver - seen.xyz;
+            if w.level > 0u && seen.w * seen.w > dual.leaf_theta_squared * (dot(offset, offset) + dual.z_r_squared) {
+                open(&w);
+                continue;
+            }
+            if seen.w > 0.0 {
+                notes[note(count, local)] = at;
+                count += 1u;
+            }
+            pass_by(&w);
+        }
+        for (var k = 0u; k < count; k++) { sum += sent(notes[note(k, local)], index, receiver); }
+    }
+    // Where hardly any light comes, an expansion may dip below none.
+    exitance[index] = max(sum, vec4f(0.0));
+}
+
+// What a source sends to a texel, and the one evaluation it took.
+fn sent(source: u32, texel: u32, receiver: vec3f) -> vec4f {
+    let lamp = lamps[source];
+    let spread = lamp.spread * select(1.0, 1.0 / NEIGHBOUR_NARROWING, source == texel);
+    return vec4f(received(dual.table, receiver, Source(bounds[source].xyz, spread, lamp.normal, lamp.power)), 1.0);
+}

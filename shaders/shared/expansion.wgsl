@@ -1,0 +1,78 @@
+// Radiant exitance around a point, to second order: what a group of receivers shares, RGB per mm⁰, mm¹, mm².
+struct Expansion {
+    value: vec3f,
+    // Kernel evaluations spent on one of the texels below, its share of what its ancestors spent.
+    evaluations: f32,
+    // Gradient.
+    x: vec3f,
+    y: vec3f,
+    z: vec3f,
+    // Hessian.
+    xx: vec3f,
+    yy: vec3f,
+    zz: vec3f,
+    xy: vec3f,
+    xz: vec3f,
+    yz: vec3f,
+}
+
+// The expansion about a point `d` away.
+fn moved(e: Expansion, d: vec3f) -> Expansion {
+    var m = e;
+    let hx = e.xx * d.x + e.xy * d.y + e.xz * d.z;
+    let hy = e.xy * d.x + e.yy * d.y + e.yz * d.z;
+    let hz = e.xz * d.x + e.yz * d.y + e.zz * d.z;
+    m.value += (e.x + 0.5 * hx) * d.x + (e.y + 0.5 * hy) * d.y + (e.z + 0.5 * hz) * d.z;
+    m.x += hx;
+    m.y += hy;
+    m.z += hz;
+    return m;
+}
+
+// The kernel and its first two derivatives by r².
+struct Jet {
+    value: vec3f,
+    first: vec3f,
+    second: vec3f,
+}
+
+// As `area_averaged_profile`, but blended in the logarithm: what is far enough to be shared looks much the same lying and facing.
+// Derivatives are those of the parabolas through neighbouring columns, blended, for the slope of the interpolated table jumps.
+fn profile_jet(table: KernelTable, texels: texture_2d<f32>, r2: f32, s2: f32, facing: f32) -> Jet {
+    let x = table_coordinate(r2, table.least_r2, R2_CELLS_PER_OCTAVE, table.columns);
+    let y = table_coordinate(s2, table.least_s2, S2_CELLS_PER_OCTAVE, table.rows);
+    let column = i32(x);
+    let row = i32(y);
+    let fx = x - f32(column);
+    let fy = y - f32(row);
+    var v: array<vec3f, 4>;
+    for (var k = 0; k < 4; k++) {
+        let at = clamp(column + k - 1, 0, i32(table.columns) - 1);
+        let facing_row = row + i32(table.rows);
+        let lying = mix(textureLoad(texels, vec2i(at, row), 0).rgb, textureLoad(texels, vec2i(at, row + 1), 0).rgb, fy);
+        let upright = mix(textureLoad(texels, vec2i(at, facing_row), 0).rgb, textureLoad(texels, vec2i(at, facing_row + 1), 0).rgb, fy);
+        v[k] = mix(lying, upright, facing);
+    }
+    const CELLS: f32 = R2_CELLS_PER_OCTAVE * 1.44269504;
+    // By ln r².
+    let first = CELLS * 0.5 * mix(v[2] - v[0], v[3] - v[1], fx);
+    let second = CELLS * CELLS * mix(v[2] - 2.0 * v[1] + v[0], v[3] - 2.0 * v[2] + v[1], fx);
+    let value = exp(mix(v[1], v[2], fx));
+    return Jet(value, value * first / r2, value * (first * first + second - first) / r2 / r2);
+}
+
+// Adds what one source sends to the receivers about a point `d` from it.
+fn add(e: ptr<function, Expansion>, power: vec3f, jet: Jet, d: vec3f) {
+    let first = 2.0 * power * jet.first;
+    let second = 4.0 * power * jet.second;
+    (*e).value += power * jet.value;
+    (*e).x += first * d.x;
+    (*e).y += first * d.y;
+    (*e).z += first * d.z;
+    (*e).xx += second * (d.x * d.x) + first;
+    (*e).yy += second * (d.y * d.y) + first;
+    (*e).zz += second * (d.z * d.z) + first;
+    (*e).xy += second * (d.x * d.y);
+    (*e).xz += second * (d.x * d.z);
+    (*e).yz += second * (d.y * d.z);
+}
