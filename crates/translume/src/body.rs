@@ -92,7 +92,7 @@ impl Body {
 
         let tree = Tree::new(extent.texels);
         if matches!(method, Method::Dual { .. }) {
-            dual::check(&tree, descriptor.list_entries, &device.limits())?;
+            dual::check(&tree, &device.limits())?;
         }
         let buffers = Buffers::new(device, mesh, atlas, &tree);
         let exitance = stages.resolve.texture(device, atlas.size);
@@ -282,7 +282,7 @@ impl Body {
     pub fn set_method(&mut self, method: Method) -> Result<(), Error> {
         method.validate()?;
         if matches!(method, Method::Dual { .. }) {
-            dual::check(&self.tree, self.list_entries, &self.limits)?;
+            dual::check(&self.tree, &self.limits)?;
         }
         self.scatter_stale |= method != self.method;
         self.method = method;

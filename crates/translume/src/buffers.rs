@@ -74,7 +74,10 @@ impl Extent {
     pub fn check(&self, limits: &wgpu::Limits) -> Result<(), Error> {
         let texture = u64::from(limits.max_texture_dimension_2d);
         let binding = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
-        let clusters = u64::from(Tree::new(self.texels).clusters()) * size_of::<Cluster>() as u64;
+        let tree = Tree::new(self.texels);
+        let clusters = u64::from(tree.clusters()) * size_of::<Cluster>() as u64;
+        let lamps = u64::from(tree.sources()) * size_of::<LampLayout>() as u64;
+        let bounds = 16 * u64::from(tree.sources() + tree.clusters());
         let pixels = 4 * u64::from(self.atlas_size) * u64::from(self.atlas_size);
         let deltas = 12 * u64::from(self.vertices) * u64::from(self.targets);
         let influences = 8 * u64::from(self.vertices) * u64::from(self.influences_per_vertex);
@@ -84,6 +87,8 @@ impl Extent {
             ("atlas", pixels, SMALLER_ATLAS),
             ("texels", size_of::<TexelLayout>() as u64 * u64::from(self.texels), SMALLER_ATLAS),
             ("clusters", clusters, SMALLER_ATLAS),
+            ("lamps", lamps, SMALLER_ATLAS),
+            ("bounds", bounds, SMALLER_ATLAS),
             ("mesh", 36 * u64::from(self.vertices), SMALLER_MESH),
             ("mesh", adjacency, SMALLER_MESH),
             ("morph targets", deltas, "use fewer morph targets"),

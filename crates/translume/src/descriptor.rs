@@ -17,7 +17,8 @@ pub struct BodyDescriptor<'a> {
     pub profile: Profile,
     /// How the scatter sum is evaluated.
     pub method: Method,
-    /// Memory of [`Method::Dual`] for open sources, in entries of four bytes per texel. What finds no room takes longer, but is not lost
+    /// Memory of [`Method::Dual`] for open sources, in entries of four bytes per texel, 1..=1024; no more than one storage binding
+    /// holds are made. What finds no room takes longer, but is not lost
     /// ([`Outputs::lists`](crate::Outputs::lists) counts it); the same input then need not give the same bits. Bodies took 4 to 11 at
     /// θ = 0.7 and more.
     pub list_entries: u32,
@@ -56,6 +57,10 @@ impl<'a> BodyDescriptor<'a> {
         if !(self.mm_per_unit > 0.0 && self.mm_per_unit.is_finite()) {
             let problem = format!("{} mm per unit", self.mm_per_unit);
             return fail(problem, "give a finite scale above 0");
+        }
+        if !(1..=1024).contains(&self.list_entries) {
+            let problem = format!("{} words a texel for the lists of the scatter", self.list_entries);
+            return fail(problem, "give 1 to 1024");
         }
         self.shadows.validate(limit)
     }

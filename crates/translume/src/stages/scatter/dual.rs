@@ -42,9 +42,14 @@ fn start_level(tree: &Tree) -> u32 {
     tree.counts.iter().rposition(|count| *count >= LEAST_RECEIVERS).unwrap_or(0) as u32
 }
 
-/// Words for the lists; a link has 28 bits to say where it leads.
-fn capacity(texels: u32, entries_per_texel: u32) -> u32 {
-    texels.saturating_mul(entries_per_texel).saturating_add(ROOT).min(1 << 28)
+/// Words for the lists: as many as wished, as a binding holds, and as the 28 bits of a link can tell apart. Too few only cost time.
+fn capacity(texels: u32, entries_per_texel: u32, limits: &wgpu::Limits) -> u32 {
+    let room = (binding(limits) - LISTS_HEADER) / 4;
+    texels.saturating_mul(entries_per_texel).saturating_add(ROOT).min(1 << 28).min(room as u32)
+}
+
+fn binding(limits: &wgpu::Limits) -> u64 {
+    limits.max_storage_buffer_binding_size.min(limits.max_buffer_size).min(1 << 30)
 }
 
 /// Bytes of the expansions of all receivers from the second level on.
@@ -53,10 +58,8 @@ fn expansions(tree: &Tree) -> u64 {
 }
 
 /// Whether the device can hold what the dual scatter remembers.
-pub(crate) fn check(tree: &Tree, entries_per_texel: u32, limits: &wgpu::Limits) -> Result<(), Error> {
-    let lists = LISTS_HEADER + 4 * u64::from(capacity(tree.counts[0], entries_per_texel));
-    let required = lists.max(expansions(tree));
-    let actual = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
+pub(crate) fn check(tree: &Tree, limits: &wgpu::Limits) -> Result<(), Error> {
+    let (required, actual) = (expansions(tree), binding(limits));
     if required <= actual {
         return Ok(());
     }
@@ -92,7 +95,7 @@ impl Dual {
         entries_per_texel: u32,
     ) -> DualMemory {
         let start_level = start_level(tree);
-        let capacity = capacity(tree.counts[0], entries_per_texel);
+        let capacity = capacity(tree.counts[0], entries_per_texel, &device.limits());
         let uniforms = gpu::uniform_buffer(device, "dual", UNIFORM_STRIDE * u64::from(start_level + 1));
         let expansions = gpu::buffer(device, "expansions", expansions(tree));
         let heads = gpu::buffer(device, "heads", 4 * u64::from(tree.clusters()));
