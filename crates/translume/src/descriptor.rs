@@ -17,7 +17,7 @@ pub struct BodyDescriptor<'a> {
     pub profile: Profile,
     /// How the scatter sum is evaluated.
     pub method: Method,
-    /// Memory of [`Method::Dual`] for open sources, in entries of four bytes per texel, 1..=1024; no more than one storage binding
+    /// Memory of [`Method::Dual`] for open sources, in entries of four bytes per texel, 0..=1024; no more than one storage binding
     /// holds are made. What finds no room takes longer, but is not lost
     /// ([`Outputs::lists`](crate::Outputs::lists) counts it); the same input then need not give the same bits. Bodies took 4 to 11 at
     /// θ = 0.7 and more.
@@ -58,9 +58,9 @@ impl<'a> BodyDescriptor<'a> {
             let problem = format!("{} mm per unit", self.mm_per_unit);
             return fail(problem, "give a finite scale above 0");
         }
-        if !(1..=1024).contains(&self.list_entries) {
+        if !(0..=1024).contains(&self.list_entries) {
             let problem = format!("{} words a texel for the lists of the scatter", self.list_entries);
-            return fail(problem, "give 1 to 1024");
+            return fail(problem, "give at most 1024");
         }
         self.shadows.validate(limit)
     }
