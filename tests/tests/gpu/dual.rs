@@ -3,7 +3,9 @@
 use glam::{Mat4, Vec3};
 use std::sync::Arc;
 use std::time::Instant;
-use translume::{DirectionalLight, Error, Frame, Light, Lighting, Medium, Method, Stage, readback, wgpu};
+use translume::{
+    AmbientLight, DirectionalLight, Error, Frame, Light, Lighting, Medium, Method, Stage, readback, wgpu,
+};
 use translume_mesh::{Atlas, builtin};
 use translume_reference::scatter;
 use translume_tests::{
@@ -201,6 +203,23 @@ fn dark_and_crushed_bodies_stay_finite() {
     holds(close("crushed flat", found));
     let dark = show(&mut fixture, USUAL, &Frame { lighting: Lighting::Lights(&[]), ..Frame::default() });
     assert!(dark.iter().all(|b| *b == [0.0; 4]), "[{}] light from nowhere", gpu().adapter_name);
+}
+
+/// Where every texel shines no source is dark, and lists are at their longest.
+fn room(list_entries: Option<u32>) -> Check {
+    let mut fixture = Fixture::new(&creature(), |d| {
+        d.medium = Medium::JADE;
+        d.list_entries = list_entries.unwrap_or(d.list_entries);
+    });
+    let lights = [sun()[0], Light::Ambient(AmbientLight::default())];
+    show(&mut fixture, USUAL, &Pose::rest(1).frame(&lights));
+    at_most("dual: groups without room in light from everywhere", overflows(&fixture).into(), 0.0)
+}
+
+#[test]
+fn light_from_everywhere_has_room() {
+    holds(room(None));
+    notices(room(Some(6)));
 }
 
 #[test]
