@@ -184,12 +184,9 @@ fn inner(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: v
             let index = notes[note(k, local)];
             let lamp = lamps[index];
             let d = receiver - bounds[index].xyz;
-            let distance_squared = dot(d, d);
-            let along = dot(d, lamp.normal);
-            let facing = select(0.0, along * along / distance_squared, distance_squared > 0.0);
             // Derivatives by r² lose their digits where r hardly counts.
-            let r2 = max(distance_squared, max(0.01 * size * size, dual.table.least_r2));
-            add(&e, lamp.power, profile_jet(dual.table, kernel_table, r2, lamp.spread * lamp.spread, min(facing, 1.0)), d);
+            let r2 = max(dot(d, d), max(0.01 * size * size, dual.table.least_r2));
+            add(&e, lamp.power, profile_jet(dual.table, kernel_table, r2, lamp.spread * lamp.spread, facing_square(d, lamp.normal)), d);
         }
         evaluated += count;
     }

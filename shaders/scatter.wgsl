@@ -68,7 +68,7 @@ fn tree(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: ve
             } else {
                 let cluster = clusters[scatter.offsets[level / 4u][level % 4u] + node];
                 let offset = receiver - cluster.centroid;
-                let size = max(1.6 * cluster.spread, 0.9 * cluster.radius);
+                let size = size_of(cluster.spread, cluster.radius);
                 found = size * size < scatter.theta_squared * (dot(offset, offset) + scatter.z_r_squared);
                 source = Source(cluster.centroid, cluster.spread, cluster.normal, cluster.power);
                 // A dark cluster needs no opening.

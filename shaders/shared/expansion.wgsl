@@ -39,12 +39,11 @@ struct Jet {
 // As `area_averaged_profile`, but blended in the logarithm: what is far enough to be shared looks much the same lying and facing.
 // Derivatives are those of the parabolas through neighbouring columns, blended, for the slope of the interpolated table jumps.
 fn profile_jet(table: KernelTable, texels: texture_2d<f32>, r2: f32, s2: f32, facing: f32) -> Jet {
-    let x = table_coordinate(r2, table.least_r2, R2_CELLS_PER_OCTAVE, table.columns);
-    let y = table_coordinate(s2, table.least_s2, S2_CELLS_PER_OCTAVE, table.rows);
-    let column = i32(x);
-    let row = i32(y);
-    let fx = x - f32(column);
-    let fy = y - f32(row);
+    let cell = table_cell(table, r2, s2);
+    let column = cell.column;
+    let row = cell.row;
+    let fx = cell.share.x;
+    let fy = cell.share.y;
     var v: array<vec3f, 4>;
     for (var k = 0; k < 4; k++) {
         let at = clamp(column + k - 1, 0, i32(table.columns) - 1);

@@ -16,15 +16,27 @@ fn table_coordinate(value: f32, least: f32, cells_per_octave: f32, cells: u32) -
     return min(log2(max(value / least, 1.0)) * cells_per_octave, f32(cells - 1u) - 0.001);
 }
 
+// A cell of the table, and where in it a place lies, 0..1.
+struct TableCell {
+    column: i32,
+    row: i32,
+    share: vec2f,
+}
+
+fn table_cell(table: KernelTable, r2: f32, s2: f32) -> TableCell {
+    let x = table_coordinate(r2, table.least_r2, R2_CELLS_PER_OCTAVE, table.columns);
+    let y = table_coordinate(s2, table.least_s2, S2_CELLS_PER_OCTAVE, table.rows);
+    return TableCell(i32(x), i32(y), vec2f(x - floor(x), y - floor(y)));
+}
+
 // r2: squared distance, mm²     s2: squared rms radius of the source, mm²
 // facing: squared cosine between the source's mean normal and the connecting line       returns 1/mm²
 fn area_averaged_profile(table: KernelTable, texels: texture_2d<f32>, r2: f32, s2: f32, facing: f32) -> vec3f {
-    let x = table_coordinate(r2, table.least_r2, R2_CELLS_PER_OCTAVE, table.columns);
-    let y = table_coordinate(s2, table.least_s2, S2_CELLS_PER_OCTAVE, table.rows);
-    let column = i32(x);
-    let row = i32(y);
-    let fx = x - f32(column);
-    let fy = y - f32(row);
+    let cell = table_cell(table, r2, s2);
+    let column = cell.column;
+    let row = cell.row;
+    let fx = cell.share.x;
+    let fy = cell.share.y;
     let facing_row = row + i32(table.rows);
     let lying = mix(
         mix(textureLoad(texels, vec2i(column, row), 0).rgb, textureLoad(texels, vec2i(column + 1, row), 0).rgb, fx),

@@ -54,9 +54,9 @@ impl Default for SphereLight {
 
 impl AmbientLight {
     /// Whether it is shadowed along directions of its own rather than along those of the whole sky: where these are more.
-    pub(crate) fn has_own_points(&self, options: &ShadowOptions) -> bool {
+    pub(crate) fn is_shadowed_by_points(&self, options: &ShadowOptions) -> bool {
         let share = 0.5 * (1.0 - self.half_angle.min(std::f32::consts::PI).cos());
-        options.directions as f32 * share < options.area_points as f32
+        self.shadow && options.directions as f32 * share < options.area_points as f32
     }
 
     /// `count` unit vectors that share its solid angle, and the share of each, sr.

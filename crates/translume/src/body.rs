@@ -195,7 +195,7 @@ impl Body {
             };
             let gathering = lighting::gather(lights, &body)?;
             self.make_room_for_views(device, gathering.layers);
-            self.depth_maps.write_views(queue, 0, &gathering.views);
+            self.depth_maps.write_views(queue, &gathering.views);
             queue.write_buffer(&self.buffers.gather_uniform, 0, bytemuck::bytes_of(&*gathering.layout));
             (self.views, self.owners) = (gathering.views, gathering.owners);
             self.pending.insert(StageSet::from_stage_on(Stage::Shadow));

@@ -30,20 +30,25 @@ pub(crate) struct Gathering {
     pub owners: Vec<usize>,
 }
 
-/// Whether some light is shadowed by what is known of the sky.
-pub(crate) fn has_shadowed_sky(lights: &[Light], options: &ShadowOptions) -> bool {
-    lights.iter().any(|light| match light {
-        Light::Ambient(light) => light.shadow && !light.has_own_points(options),
+/// Whether a light is shadowed by what is known of the sky.
+fn is_shadowed_sky(light: &Light, options: &ShadowOptions) -> bool {
+    match light {
+        Light::Ambient(light) => light.shadow && !light.is_shadowed_by_points(options),
         Light::Environment(light) => light.shadow,
         _ => false,
-    })
+    }
+}
+
+/// Whether some light is.
+pub(crate) fn has_shadowed_sky(lights: &[Light], options: &ShadowOptions) -> bool {
+    lights.iter().any(|light| is_shadowed_sky(light, options))
 }
 
 /// What the gather's pipeline has to contain.
 pub(crate) fn kinds(lights: &[Light], options: &ShadowOptions) -> Kinds {
     let area = |light: &Light| match light {
         Light::Rectangle(_) | Light::Sphere(_) => true,
-        Light::Ambient(light) => light.shadow && light.has_own_points(options),
+        Light::Ambient(light) => light.is_shadowed_by_points(options),
         _ => false,
     };
     Kinds { area_lights: lights.iter().any(area), shadowed_sky: has_shadowed_sky(lights, options) }
@@ -132,10 +137,18 @@ fn light_layout(
     let mm = |vector: [f32; 3]| vector.map(|x| x * scale);
     // As bright in every direction, wherever the light enters.
     (layout.cone_scale, layout.cone_offset) = (0.0, 1.0);
+    let mut region = None;
     (layout.kind, layout.vector, layout.colour) = match light {
-        Light::Directional(light) => (0, Vec3::from(light.to_light).normalize().to_array(), light.irradiance),
-        Light::Point(light) => (1, mm(light.position), in_mm(light.intensity)),
+        Light::Directional(light) => {
+            region = light.region;
+            (0, Vec3::from(light.to_light).normalize().to_array(), light.irradiance)
+        }
+        Light::Point(light) => {
+            region = light.region;
+            (1, mm(light.position), in_mm(light.intensity))
+        }
         Light::Spot(light) => {
+            region = light.region;
             layout.axis = Vec3::from(light.direction).normalize().to_array();
             [layout.cone_scale, layout.cone_offset] = light.falloff();
             (1, mm(light.position), in_mm(light.intensity))
@@ -152,12 +165,6 @@ fn light_layout(
             (3, mm(light.center), light.radiance)
         }
         Light::Ambient(_) | Light::Environment(_) => return layout,
-    };
-    let region = match light {
-        Light::Directional(light) => light.region,
-        Light::Point(light) => light.region,
-        Light::Spot(light) => light.region,
-        _ => None,
     };
     // Far corners stay finite, so that infinity minus infinity never arises.
     let bound = |x: f32| (x * scale).clamp(-1e30, 1e30);
@@ -207,18 +214,17 @@ fn sky_layout(layout: &mut GatherLayout, lights: &[Light], body: &GatherBody<'_>
             }
         }
     }
-    if !has_shadowed_sky(lights, body.shadows) {
+    let shadowed: Vec<_> = lights.iter().filter(|light| is_shadowed_sky(light, body.shadows)).collect();
+    if shadowed.is_empty() {
         return;
     }
     layout.direction_count = body.directions.len() as u32;
     for (slot, direction) in layout.sky.iter_mut().zip(body.directions) {
         let mut radiance = Vec3::ZERO;
-        for light in lights {
+        for light in &shadowed {
             radiance += match light {
-                Light::Ambient(light) if light.shadow && !light.has_own_points(body.shadows) => {
-                    cone_radiance(light, *direction, body.directions.len())
-                }
-                Light::Environment(light) if light.shadow => environment_radiance(light, *direction),
+                Light::Ambient(light) => cone_radiance(light, *direction, body.directions.len()),
+                Light::Environment(light) => environment_radiance(light, *direction),
                 _ => Vec3::ZERO,
             };
         }

@@ -83,11 +83,11 @@ pub(crate) fn light_views(
             whole(vec![directional_view(Vec3::from(light.to_light).normalize(), subject, resolution, 0)])
         }
         Light::Point(light) if light.shadow => {
-            whole(point_views(Vec3::from(light.position) * scale, subject, resolution, 0))
+            whole(point_views(Vec3::from(light.position) * scale, subject, resolution))
         }
         Light::Spot(light) if light.shadow => {
             let position = Vec3::from(light.position) * scale;
-            let views = point_views(position, subject, resolution, 0);
+            let views = point_views(position, subject, resolution);
             if views.len() > 1 && light.outer_angle <= WIDEST_CONE {
                 whole(vec![cone_view(
                     position,
@@ -108,7 +108,7 @@ pub(crate) fn light_views(
             let emitters = light.emitters(scale, options.area_points, middle, reach);
             area_views(emitters, light.shadow, subject, options)
         }
-        Light::Ambient(light) if light.shadow && light.has_own_points(options) => {
+        Light::Ambient(light) if light.is_shadowed_by_points(options) => {
             let emitters = light.emitters(options.area_points);
             let shift = shared_shift(emitters.len());
             let directions = emitters.iter().map(|emitter| emitter.truncate());
@@ -138,13 +138,7 @@ fn area_views(
     let shift = shared_shift(emitters.len());
     let points = emitters.iter().map(|emitter| emitter.truncate());
     let one_each = points.clone().all(|point| is_narrow(point, subject));
-    let views = points.flat_map(|point| {
-        if one_each {
-            vec![narrow_view(point, subject, options.resolution, shift)]
-        } else {
-            cube_views(point, subject, options.resolution, shift)
-        }
-    });
+    let views = points.flat_map(|point| views_from(point, one_each, subject, options.resolution, shift));
     LightViews { views: views.collect(), views_per_emitter: if one_each { 1 } else { 6 }, emitters }
 }
 
@@ -223,8 +217,13 @@ fn margin(resolution: u32) -> f32 {
     1.0 + 2.0 * MARGIN / resolution as f32
 }
 
-fn point_views(position: Vec3, subject: &Subject<'_>, resolution: u32, shift: u32) -> Vec<View> {
-    if is_narrow(position, subject) {
+fn point_views(position: Vec3, subject: &Subject<'_>, resolution: u32) -> Vec<View> {
+    views_from(position, is_narrow(position, subject), subject, resolution, 0)
+}
+
+/// One view that sees all of the body, or six that look all around.
+fn views_from(position: Vec3, narrow: bool, subject: &Subject<'_>, resolution: u32, shift: u32) -> Vec<View> {
+    if narrow {
         vec![narrow_view(position, subject, resolution, shift)]
     } else {
         cube_views(position, subject, resolution, shift)

@@ -9,7 +9,7 @@ use crate::stages::shadow::DepthMaps;
 
 pub(crate) struct Gather {
     layout: wgpu::BindGroupLayout,
-    /// For each of [`Kinds::ALL`].
+    /// By [`Kinds::index`].
     irradiance: [wgpu::ComputePipeline; 4],
 }
 
@@ -21,11 +21,9 @@ pub(crate) struct Kinds {
 }
 
 impl Kinds {
-    const ALL: [Self; 4] =
-        [Self::of(false, false), Self::of(true, false), Self::of(false, true), Self::of(true, true)];
-
-    const fn of(area_lights: bool, shadowed_sky: bool) -> Self {
-        Self { area_lights, shadowed_sky }
+    /// Place of their pipeline.
+    fn index(self) -> usize {
+        usize::from(self.area_lights) + 2 * usize::from(self.shadowed_sky)
     }
 }
 
@@ -34,7 +32,8 @@ impl Gather {
         let types = [UNIFORM, READ, READ, READ, READ, READ, WRITE, WRITE, WRITE, DEPTH_MAPS];
         let layout = gpu::layout(device, "gather", wgpu::ShaderStages::COMPUTE, &types);
         let module = gpu::module(device, translume_shaders::GATHER);
-        let irradiance = Kinds::ALL.map(|Kinds { area_lights, shadowed_sky }| {
+        let irradiance = [(false, false), (true, false), (false, true), (true, true)];
+        let irradiance = irradiance.map(|(area_lights, shadowed_sky)| {
             let constants = [("AREA_LIGHTS", area_lights), ("SHADOWED_SKY", shadowed_sky)];
             let constants = constants.map(|(name, on)| (name, f64::from(u8::from(on))));
             gpu::specialised_pipeline(device, &layout, &module, "irradiance", &constants)
@@ -67,9 +66,7 @@ impl Gather {
     }
 
     pub fn encode(&self, pass: &mut Pass<'_>, group: &wgpu::BindGroup, kinds: Kinds, texels: u32) {
-        for (pipeline, _) in self.irradiance.iter().zip(Kinds::ALL).filter(|(_, of)| *of == kinds) {
-            pass.set_pipeline(pipeline);
-        }
+        pass.set_pipeline(&self.irradiance[kinds.index()]);
         pass.set_bind_group(group, &[]);
         pass.dispatch(texels);
     }

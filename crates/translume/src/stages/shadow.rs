@@ -151,8 +151,8 @@ impl DepthMaps {
         self.texture.width() == width && self.texture.depth_or_array_layers() >= layers
     }
 
-    pub fn write_views(&self, queue: &wgpu::Queue, first: usize, views: &[View]) {
-        for (slot, view) in (first as u64..).zip(views) {
+    pub fn write_views(&self, queue: &wgpu::Queue, views: &[View]) {
+        for (slot, view) in (0..).zip(views) {
             queue.write_buffer(
                 &self.uniforms,
                 slot * UNIFORM_STRIDE,

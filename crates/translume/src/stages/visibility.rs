@@ -127,7 +127,7 @@ impl SkyMemory {
             }
             queue.write_buffer(&memory.uniforms, STRIDE * k as u64, bytemuck::bytes_of(&layout));
         }
-        memory.maps.write_views(queue, 0, &self.views);
+        memory.maps.write_views(queue, &self.views);
         self.stale > 0
     }
 }
