@@ -14,8 +14,30 @@ struct Level {
     padding1: u32,
 }
 
+// Which texels are needed as receivers.
+struct Need {
+    // Millimetres to clip space.
+    view_projection: mat4x4f,
+    // Millimetres.
+    eye: vec3f,
+    kind: u32,
+}
+const IN_VIEW: u32 = 1u;
+const FACING: u32 = 2u;
+const UNDER_VERTICES: u32 = 4u;
+// Receivers are not the middles of texels but points anywhere on them.
+const POINTS: u32 = 8u;
+// From the middle of a square to its corner, over the rms radius of a disc of the same area.
+const CORNER: f32 = 1.7724539;
+// A picture blends a texel with its neighbours, so those count too that lie up to so many of their radii outside the picture, or are turned away
+// from the eye by no more than twice the angle between the normals of their group, and by that between those and their triangles.
+const BORDER: f32 = 8.0;
+// For rounding.
+const SLACK: f32 = 0.02;
+
 @group(0) @binding(0) var<uniform> level: Level;
 @group(0) @binding(1) var<storage, read> texel_positions: array<vec4f>;
+// In w the cosine of how far triangles lean from the normal.
 @group(0) @binding(2) var<storage, read> texel_normals: array<vec4f>;
 @group(0) @binding(3) var<storage, read> texel_irradiance: array<vec4f>;
 @group(0) @binding(4) var<storage, read_write> clusters: array<Cluster>;
@@ -24,6 +46,40 @@ struct Level {
 @group(0) @binding(6) var<storage, read_write> bounds: array<vec4f>;
 // What the sources of `bounds` send, in their order.
 @group(0) @binding(7) var<storage, read_write> lamps: array<Lamp>;
+@group(0) @binding(8) var<uniform> need: Need;
+// One bit a texel: whether a vertex stands on it.
+@group(0) @binding(9) var<storage, read> under_vertices: array<u32>;
+
+fn is_needed(index: u32, place: vec3f, spread: f32) -> bool {
+    if (need.kind & UNDER_VERTICES) != 0u && (under_vertices[index / 32u] >> (index % 32u) & 1u) == 0u { return false; }
+    if (need.kind & IN_VIEW) == 0u { return true; }
+    // How far clip coordinates change over the border, at most.
+    let m = transpose(need.view_projection);
+    let border = BORDER * spread;
+    let clip = need.view_projection * vec4f(place, 1.0);
+    let reach = clip.w + border * length(m[3].xyz);
+    return reach > 0.0
+        && abs(clip.x) <= reach + border * length(m[0].xyz)
+        && abs(clip.y) <= reach + border * length(m[1].xyz);
+}
+
+// Whether any texel of a group, or beside it, may be seen from in front.
+fn is_facing(first: u32, count: u32) -> bool {
+    if (need.kind & FACING) == 0u { return true; }
+    var sum = vec3f(0.0);
+    for (var k = 0u; k < count; k++) { sum += texel_normals[first + k].xyz; }
+    let mean = normalize(sum);
+    var least = 1.0;
+    var leaning = 1.0;
+    for (var k = 0u; k < count; k++) {
+        least = min(least, dot(mean, texel_normals[first + k].xyz));
+        leaning = min(leaning, texel_normals[first + k].w);
+    }
+    let beyond = 2.0 * acos(clamp(least, -1.0, 1.0)) + acos(clamp(leaning, -1.0, 1.0)) + SLACK;
+    if !(beyond < 1.5) { return true; }
+    let to_eye = need.eye - texel_positions[first].xyz;
+    return dot(to_eye, mean) >= -sin(beyond) * length(to_eye);
+}
 
 fn texel_cluster(index: u32) -> Cluster {
     let place = texel_positions[index];
@@ -39,12 +95,18 @@ fn from_texels(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) gro
     for (var k = 0u; k < 4u; k++) {
         if node * 4u + k < level.child_count {
             children[k] = texel_cluster(node * 4u + k);
-            receiving[k] = Receiver(children[k].centroid, 0.0, 0.0, 1u, 0u, 0u);
+            let needed = is_needed(node * 4u + k, children[k].centroid, children[k].spread);
+            let extent = select(0.0, children[k].spread, (need.kind & POINTS) != 0u);
+            receiving[k] = Receiver(children[k].centroid, extent, CORNER * extent, select(0u, 1u, needed), 0u, 0u);
             bounds[node * 4u + k] = vec4f(children[k].centroid, select(0.0, NO_SIZE, any(children[k].power > vec3f(0.0))));
             lamps[node * 4u + k] = Lamp(children[k].power, NEIGHBOUR_NARROWING * children[k].spread, children[k].normal, 0u);
         }
     }
-    store(node, merge(&children, min(level.child_count - node * 4u, 4u)), merge_receivers(&receiving));
+    let count = min(level.child_count - node * 4u, 4u);
+    if !is_facing(node * 4u, count) {
+        for (var k = 0u; k < 4u; k++) { receiving[k].texels = 0u; }
+    }
+    store(node, merge(&children, count), merge_receivers(&receiving));
 }
 
 @compute @workgroup_size(64)
@@ -68,7 +130,8 @@ fn store(node: u32, cluster: Cluster, receiver: Receiver) {
     let size = select(0.0, max(size_of(cluster.spread, cluster.radius), NO_SIZE), any(cluster.power > vec3f(0.0)));
     bounds[level.source_offset + node] = vec4f(cluster.centroid, size);
     lamps[level.source_offset + node] = Lamp(cluster.power, cluster.spread, cluster.normal, 0u);
-    bounds[level.receiver_offset + node] = vec4f(receiver.centre, size_of(receiver.spread, receiver.radius));
+    let extent = select(NOT_NEEDED, size_of(receiver.spread, receiver.radius), receiver.texels > 0u);
+    bounds[level.receiver_offset + node] = vec4f(receiver.centre, extent);
 }
 
 // Children weigh by their power; where none has any, by area; where none has that either, equally.
@@ -108,10 +171,11 @@ fn merge(children: ptr<function, array<Cluster, 4>>, count: u32) -> Cluster {
     return Cluster(centroid, sqrt(spread_squared), power, radius, normal, area);
 }
 
-// Children that are not there have no texels.
+// Children that are not there have no texels, nor have those that are not needed.
 fn merge_receivers(children: ptr<function, array<Receiver, 4>>) -> Receiver {
     var texels = 0u;
     for (var k = 0u; k < 4u; k++) { texels += (*children)[k].texels; }
+    if texels == 0u { return Receiver(vec3f(0.0), 0.0, 0.0, 0u, 0u, 0u); }
     var centre = vec3f(0.0);
     for (var k = 0u; k < 4u; k++) { centre += (*children)[k].centre * (f32((*children)[k].texels) / f32(texels)); }
     var spread_squared = 0.0;

@@ -25,16 +25,18 @@ struct Composite {
 @group(0) @binding(5) var shadow_maps: texture_depth_2d_array;
 
 struct Fragment {
-    @builtin(position) clip: vec4f,
+    // The depth pass and the picture must agree to the bit.
+    @builtin(position) @invariant clip: vec4f,
     @location(0) position: vec3f,
     @location(1) normal: vec3f,
     @location(2) uv: vec2f,
+    @location(3) exitance: vec3f,
 }
 
 @vertex
 fn vertex(@location(0) xref: u32, @location(1) uv: vec2f) -> Fragment {
     let position = positions[xref].xyz;
-    return Fragment(composite.view_projection * vec4f(position, 1.0), position, normals[xref].xyz, uv);
+    return Fragment(composite.view_projection * vec4f(position, 1.0), position, normals[xref].xyz, uv, exitance_at_vertex(xref));
 }
 
 @fragment
@@ -45,9 +47,14 @@ fn fragment(in: Fragment) -> @location(0) vec4f {
     let shading = normalize(in.normal);
     let normal = select(select(-shading, shading, dot(shading, to_eye) >= 0.0), face, FLAT_NORMALS);
     let transmitted = fresnel_transmittance(composite.eta, dot(normal, to_eye));
-    var radiance = translume_exitance(exitance, in.uv) * (0.31830988 * composite.exit_scale * transmitted);
+    var radiance = exitance_at_fragment(in) * (0.31830988 * composite.exit_scale * transmitted);
     if composite.roughness > 0.0 {
         radiance += gloss(composite.roughness, in.position, normal, face, to_eye);
     }
     return vec4f(radiance, 1.0);
+}
+
+@fragment
+fn depth_alone() -> @location(0) vec4f {
+    return vec4f(0.0);
 }

@@ -2,38 +2,21 @@
 // parent left open. A source that is small seen from the receiver, and the receiver from it, is added to the receiver's expansion;
 // otherwise the larger of the two is opened, the source at once, the receiver by leaving the source to its children.
 
-struct Dual {
-    table: KernelTable,
-    texel_count: u32,
-    // Level of the receivers of this dispatch.
-    level: u32,
-    // Level of the first receivers, which take over the root.
-    start_level: u32,
-    top_level: u32,
-    // Opening angle: accepted when source size + RECEIVER_WEIGHT·receiver size < theta·√(distance² + z_r²).
-    theta_squared: f32,
-    // The same for single texels, which have no size.
-    leaf_theta_squared: f32,
-    // Square of the shortest mean free path of the three channels, mm².
-    z_r_squared: f32,
-    // Words there are in `lists`.
-    capacity: u32,
-    // Where receivers begin in `bounds`.
-    first_receiver: u32,
+struct Lists {
+    // Words taken, or that would have been.
+    taken: atomic<u32>,
+    // Nodes that found no room for their list.
+    overflows: atomic<u32>,
     padding0: u32,
     padding1: u32,
-    padding2: u32,
-    // Where each level above the texels begins among the receivers.
-    offsets: array<vec4u, 4>,
-    // Where each level begins among the sources in `bounds`.
-    sources: array<vec4u, 4>,
+    words: array<u32>,
 }
 
 @group(0) @binding(0) var<uniform> dual: Dual;
 @group(0) @binding(1) var<storage, read> bounds: array<vec4f>;
 @group(0) @binding(2) var<storage, read> lamps: array<Lamp>;
 @group(0) @binding(3) var<storage, read_write> exitance: array<vec4f>;
-// Of receivers from the second level on; those of the first go straight to `exitance`.
+// Of receivers from the second level on, those of the first going straight to `exitance`; of all where vertices or fragments follow.
 @group(0) @binding(4) var<storage, read_write> expansions: array<Expansion>;
 // Where each receiver's open sources are in `lists`.
 @group(0) @binding(5) var<storage, read_write> heads: array<u32>;
@@ -51,64 +34,12 @@ const SOURCE_EXCESS: f32 = 1.4;
 const BATCH: u32 = 16u;
 // Sources it leaves to its children before it writes them down.
 const RUN: u32 = 15u;
-// Beside the head of a list of a node of the first level: the list is an ancestor's.
-const UNDECIDED: u32 = 0x80000000u;
 const NOTED: u32 = 32u;
 // Both kinds, from either end.
 var<workgroup> notes: array<u32, 2048>;
 
 fn note(place: u32, local: u32) -> u32 {
     return place * 64u + local;
-}
-
-// A walk through the subtrees of a list's nodes.
-struct Walk {
-    // The next word of the list.
-    cursor: u32,
-    // Level of the listed node whose subtree is walked, and where in it the walk is.
-    top: u32,
-    level: u32,
-    node: u32,
-    // Whether the subtree is done, and whether the list is.
-    done: bool,
-    ended: bool,
-}
-
-fn walk(head: u32) -> Walk {
-    return Walk(head, 0u, 0u, 0u, true, false);
-}
-
-// To the next word of the list.
-fn turn_over(w: ptr<function, Walk>) {
-    let word = lists.words[(*w).cursor];
-    (*w).top = packed_level(word);
-    (*w).level = (*w).top;
-    (*w).node = packed_node(word);
-    (*w).done = (*w).top == LINK;
-    (*w).cursor = select((*w).cursor - 1u, (*w).node, (*w).done);
-    (*w).ended = (*w).cursor == 0u && (*w).done;
-}
-
-fn open(w: ptr<function, Walk>) {
-    (*w).level -= 1u;
-    (*w).node *= 4u;
-}
-
-// To the next sibling, or where there is none to that of the nearest ancestor who has one. Levels are padded to four children.
-fn pass_by(w: ptr<function, Walk>) {
-    (*w).node += 1u;
-    let up = min(countTrailingZeros((*w).node) / 2u, (*w).top - (*w).level);
-    (*w).node >>= 2u * up;
-    (*w).level += up;
-    (*w).done = (*w).level == (*w).top;
-}
-
-fn source_index(level: u32, node: u32) -> u32 {
-    return dual.sources[level / 4u][level % 4u] + node;
-}
-
-fn receiver_index(level: u32, node: u32) -> u32 {
-    return dual.offsets[level / 4u][level % 4u] + node;
 }
 
 @compute @workgroup_size(1)
@@ -138,11 +69,12 @@ fn inner(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: v
     let own = receiver_index(dual.level, node);
     let receiver = bounds[dual.first_receiver + own].xyz;
     let size = bounds[dual.first_receiver + own].w;
+    if size == NOT_NEEDED { return; }
     var before: Expansion;
     var head = ROOT_HEAD;
     if dual.level < dual.start_level {
         let parent = receiver_index(dual.level + 1u, node / 4u);
-        before = moved(expansions[parent - dual.offsets[0][2]], receiver - bounds[dual.first_receiver + parent].xyz);
+        before = moved(expansions[parent - dual.first_expansion], receiver - bounds[dual.first_receiver + parent].xyz);
         head = heads[parent];
     }
     var e = before;
@@ -199,8 +131,8 @@ fn inner(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: v
         own_head = head | select(0u, UNDECIDED, decides);
     }
     heads[own] = own_head;
-    if dual.level > 1u {
-        expansions[own - dual.offsets[0][2]] = e;
+    if own >= dual.first_expansion {
+        expansions[own - dual.first_expansion] = e;
         return;
     }
     for (var k = 0u; k < texels; k++) {
@@ -217,6 +149,10 @@ fn leaf(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: ve
     var sum = vec4f(0.0);
     var head = ROOT_HEAD | UNDECIDED;
     if dual.start_level > 0u {
+        if bounds[dual.first_receiver + receiver_index(1u, index / 4u)].w == NOT_NEEDED {
+            exitance[index] = vec4f(0.0);
+            return;
+        }
         sum = exitance[index];
         head = heads[index / 4u];
     }
@@ -240,8 +176,7 @@ fn leaf(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: ve
             if w.done { continue; }
             let at = source_index(w.level, w.node);
             let seen = bounds[at];
-            let offset = receiver - seen.xyz;
-            if w.level > 0u && seen.w * seen.w > dual.leaf_theta_squared * (dot(offset, offset) + dual.z_r_squared) {
+            if w.level > 0u && too_large_for_a_texel(seen.w, receiver - seen.xyz) {
                 open(&w);
                 continue;
             }
@@ -255,11 +190,4 @@ fn leaf(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: ve
     }
     // Where hardly any light comes, an expansion may dip below none.
     exitance[index] = max(sum, vec4f(0.0));
-}
-
-// What a source sends to a texel, and the one evaluation it took.
-fn sent(source: u32, texel: u32, receiver: vec3f) -> vec4f {
-    let lamp = lamps[source];
-    let spread = lamp.spread * select(1.0, 1.0 / NEIGHBOUR_NARROWING, source == texel);
-    return vec4f(received(dual.table, receiver, Source(bounds[source].xyz, spread, lamp.normal, lamp.power)), 1.0);
 }

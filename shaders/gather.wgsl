@@ -28,7 +28,10 @@ fn irradiance(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) grou
     let side_2 = positions[triangles[texel.triangle * 3u + 2u]].xyz - pa;
     let weights = vec2f(texel.barycentric_1, texel.barycentric_2);
     let area = texel.area_ratio * 0.5 * length(cross(side_1, side_2));
-    let normal = receiver_at(texel.triangle, clamped(weights), area).normal;
+    let own = receiver_at(texel.triangle, clamped(weights), area);
+    let normal = own.normal;
+    // How far triangles lean from it.
+    var least = dot(own.face, normal);
 
     var light = vec3f(0.0);
     var count = 0.0;
@@ -37,12 +40,14 @@ fn irradiance(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) grou
     for (var k = 0u; k < POINTS; k++) {
         let point = texel.points[k];
         if point.triangle != NOWHERE {
-            light += entering(receiver_at(point.triangle, unpack2x16unorm(point.weights), area), seen);
+            let receiver = receiver_at(point.triangle, unpack2x16unorm(point.weights), area);
+            light += entering(receiver, seen);
+            least = min(least, dot(receiver.face, normal));
             count += 1.0;
         }
     }
     texel_positions[index] = vec4f(pa + side_1 * weights.x + side_2 * weights.y, area);
-    texel_normals[index] = vec4f(normal, 0.0);
+    texel_normals[index] = vec4f(normal, least);
     texel_irradiance[index] = vec4f(light / count, 0.0);
 }
 

@@ -22,10 +22,14 @@ struct Receiver {
     spread: f32,
     // No texel is further from the centre.
     radius: f32,
+    // Those that are needed, and the only ones that count.
     texels: u32,
     padding0: u32,
     padding1: u32,
 }
+
+// Size of a group of receivers of which no picture needs one.
+const NOT_NEEDED: f32 = -1.0;
 
 // Texels are squares and tile the surface; discs of their areas overlap along the axes and leave gaps at the corners. Seen from the
 // middle of a texel, its neighbours' discs reach too far in. Narrower by this factor, the sum over an evenly lit plane closes within

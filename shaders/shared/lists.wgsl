@@ -1,14 +1,5 @@
 // Lists of nodes of the tree, of any length, in one memory. A list is read backwards from its head, the index of its last word, until a word
 // that is no node: a link to the head of what was written before, or to 0, where the list ends. The empty list's head is 0.
-struct Lists {
-    // Words taken, or that would have been.
-    taken: atomic<u32>,
-    // Nodes that found no room for their list.
-    overflows: atomic<u32>,
-    padding0: u32,
-    padding1: u32,
-    words: array<u32>,
-}
 
 // The list of the root alone.
 const ROOT_HEAD: u32 = 2u;

@@ -21,6 +21,23 @@ macro_rules! shader {
     };
 }
 
+macro_rules! composite {
+    ($name:literal, $($file:literal),+) => {
+        shader!(
+            $name,
+            "shared/fresnel.wgsl",
+            "shared/lights.wgsl",
+            "shared/area_light.wgsl",
+            "shared/environment.wgsl",
+            "shared/shadow_map.wgsl",
+            "shared/gloss.wgsl",
+            "shared/exitance.wgsl",
+            "composite.wgsl",
+            $($file),+
+        )
+    };
+}
+
 /// Rest pose, morph targets, joints and warp → positions, and normals of a rigid body.
 pub const DEFORM: Shader =
     shader!("deform", "shared/dispatch.wgsl", "shared/warp.wgsl", "shared/deform.wgsl", "deform.wgsl");
@@ -70,26 +87,57 @@ pub const DUAL: Shader = shader!(
     "shared/source.wgsl",
     "shared/expansion.wgsl",
     "shared/lists.wgsl",
+    "shared/walk.wgsl",
     "dual.wgsl"
+);
+/// What that leaves for points → radiant exitance of every vertex.
+pub const VERTICES: Shader = shader!(
+    "vertices",
+    "shared/dispatch.wgsl",
+    "shared/cluster.wgsl",
+    "shared/kernel_table.wgsl",
+    "shared/source.wgsl",
+    "shared/expansion.wgsl",
+    "shared/lists.wgsl",
+    "shared/walk.wgsl",
+    "shared/point.wgsl",
+    "vertices.wgsl"
 );
 /// Dense texels → texture.
 pub const RESOLVE: Shader = shader!("resolve", "resolve.wgsl");
 /// The camera pass.
-pub const COMPOSITE: Shader = shader!(
-    "composite",
-    "shared/fresnel.wgsl",
-    "shared/lights.wgsl",
-    "shared/area_light.wgsl",
-    "shared/environment.wgsl",
-    "shared/shadow_map.wgsl",
-    "shared/gloss.wgsl",
-    "shared/exitance.wgsl",
-    "composite.wgsl"
+pub const COMPOSITE: Shader = composite!("composite", "composite/texels.wgsl");
+/// The same with exitance at the vertices.
+pub const COMPOSITE_VERTICES: Shader = composite!("composite of vertices", "composite/vertices.wgsl");
+/// The same with exitance summed up at every fragment.
+pub const COMPOSITE_FRAGMENTS: Shader = composite!(
+    "composite of fragments",
+    "shared/cluster.wgsl",
+    "shared/kernel_table.wgsl",
+    "shared/source.wgsl",
+    "shared/expansion.wgsl",
+    "shared/lists.wgsl",
+    "shared/walk.wgsl",
+    "shared/point.wgsl",
+    "composite/fragments.wgsl"
 );
 
 /// Every module, in the order light flows through them.
-pub const ALL: [Shader; 10] =
-    [DEFORM, NORMALS, VISIBILITY, SHADOW, GATHER, CLUSTER, SCATTER, DUAL, RESOLVE, COMPOSITE];
+pub const ALL: [Shader; 13] = [
+    DEFORM,
+    NORMALS,
+    VISIBILITY,
+    SHADOW,
+    GATHER,
+    CLUSTER,
+    SCATTER,
+    DUAL,
+    VERTICES,
+    RESOLVE,
+    COMPOSITE,
+    COMPOSITE_VERTICES,
+    COMPOSITE_FRAGMENTS,
+];
 
 /// WGSL functions for a host's own material: `translume_exitance(texture, uv)` samples radiant exitance B, and
 /// `fresnel_transmittance(eta, cosine)` weighs what leaves towards the eye: L = F_t·B/π.

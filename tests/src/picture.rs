@@ -19,7 +19,9 @@ pub struct Shot {
 impl Shot {
     const UP: [f32; 3] = [0.0, 1.0, 0.0];
 
-    fn camera(&self) -> Camera {
+    /// The camera.
+    #[must_use]
+    pub fn camera(&self) -> Camera {
         let distance = (0..3).map(|k| (self.eye[k] - self.target[k]).powi(2)).sum::<f32>().sqrt();
         Camera::from(LookAt {
             eye: self.eye,

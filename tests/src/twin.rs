@@ -41,6 +41,7 @@ impl Pose {
             warp: self.warp,
             lighting: Lighting::Lights(lights),
             casters: None,
+            view: None,
         }
     }
 }

@@ -73,7 +73,13 @@ pub struct Render {
     /// How the scatter sum is evaluated: dual (groups of texels at both ends), tree (each texel by itself), or all-pairs (exact and slow).
     #[arg(long, value_name = "NAME", default_value = "dual")]
     pub method: String,
-    /// Opening angle of dual (by default 0.75) or tree (0.4); smaller is more accurate.
+    /// Error that dual keeps within: root mean square over the mean.
+    #[arg(long, value_name = "X", default_value_t = 0.01, conflicts_with = "theta")]
+    pub tolerance: f32,
+    /// Where exitance is evaluated: texel, vertex, fragment (with dual), or auto for whichever is cheapest and loses nothing.
+    #[arg(long, value_name = "PLACE", default_value = "texel")]
+    pub evaluate: String,
+    /// For experts: opening angle of dual in place of a tolerance (0.01 is 0.75), or of tree (by default 0.4).
     #[arg(long, value_name = "X")]
     pub theta: Option<f32>,
     /// Width of a shadow map in texels.

@@ -12,7 +12,9 @@ use crate::studio::Studio;
 use crate::{model, progress};
 use std::path::Path;
 use std::time::Instant;
-use translume::{BodyDescriptor, Frame, Gloss, Light, Lighting, Medium, Method, Profile, ShadowOptions};
+use translume::{
+    BodyDescriptor, Evaluate, Frame, Gloss, Light, Lighting, Medium, Method, Profile, ShadowOptions, View,
+};
 
 /// Everything a picture needs, in the units of the scene.
 struct Setup {
@@ -66,6 +68,7 @@ pub fn run(arguments: &Render) -> Result<(), Error> {
         medium: setup.medium,
         profile,
         method,
+        evaluate: evaluate(&arguments.evaluate)?,
         mm_per_unit: setup.mm_per_unit,
         flat_normals: setup.flat_normals,
         shadows: ShadowOptions {
@@ -97,6 +100,7 @@ pub fn run(arguments: &Render) -> Result<(), Error> {
             warp: motion.warp,
             lighting: Lighting::Lights(&lights),
             casters: None,
+            view: Some(View { camera, pixels: studio.pixels() }),
         };
         frames.push(studio.take(&frame, &camera, setup.gloss, develop)?);
         bar.inc(1);
@@ -117,15 +121,27 @@ pub fn run(arguments: &Render) -> Result<(), Error> {
 }
 
 fn method(arguments: &Render) -> Result<Method, Error> {
+    let angle = arguments.theta;
     match arguments.method.as_str() {
-        "dual" => Ok(arguments.theta.map_or(Method::default(), |theta| Method::Dual { theta })),
-        "tree" => Ok(Method::Tree { theta: arguments.theta.unwrap_or(0.4) }),
+        "dual" => {
+            let within = Method::Within { tolerance: arguments.tolerance };
+            Ok(angle.map_or(within, |theta| Method::Dual { theta }))
+        }
+        "tree" => Ok(Method::Tree { theta: angle.unwrap_or(0.4) }),
         "all-pairs" => Ok(Method::AllPairs),
         other => Err(Error::Option {
             option: "--method",
             problem: format!("no method is called \"{other}\"; known are dual, tree, all-pairs"),
         }),
     }
+}
+
+fn evaluate(name: &str) -> Result<Evaluate, Error> {
+    let known = Evaluate::NAMES.iter().find(|(known, _)| *known == name);
+    known.map(|(_, evaluate)| *evaluate).ok_or_else(|| Error::Option {
+        option: "--evaluate",
+        problem: format!("\"{name}\" is no place; known are texel, vertex, fragment, auto"),
+    })
 }
 
 /// Fails before the unwrapping rather than after.

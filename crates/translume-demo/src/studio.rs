@@ -98,6 +98,11 @@ impl Studio {
         Ok(Picture::from_samples(&samples, self.colour.width(), self.samples, develop))
     }
 
+    /// Width and height of what is drawn.
+    pub fn pixels(&self) -> [u32; 2] {
+        [self.colour.width(), self.colour.height()]
+    }
+
     /// The adapter's name, for messages.
     pub fn adapter(&self) -> &str {
         &self.gpu.adapter

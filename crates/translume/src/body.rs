@@ -1,13 +1,16 @@
 //! A body: one mesh that light goes through.
 
 mod encode;
+mod evaluation;
 
 use crate::bounds::PoseBounds;
 use crate::buffers::{Buffers, Extent, Outputs};
 use crate::descriptor::BodyDescriptor;
+use crate::evaluate::{Evaluate, Shape};
 use crate::frame::{self, Casters, Frame, Lighting};
+use crate::kernel_table::KernelTableLayout;
 use crate::kernel_texture::KernelTexture;
-use crate::layout::MAX_VIEWS;
+use crate::layout::{MAX_VIEWS, NeedLayout};
 use crate::lighting::{self, GatherBody};
 use crate::pose::Pose;
 use crate::profile::Dipole;
@@ -15,7 +18,7 @@ use crate::shadow_view::{Subject, View};
 use crate::stages::cluster::Tree;
 use crate::stages::deform::DeformGroups;
 use crate::stages::gather::Kinds;
-use crate::stages::scatter::dual::{self, DualMemory};
+use crate::stages::scatter::dual::{self, Demand, DualMemory};
 use crate::stages::scatter::{Method, Scatter};
 use crate::stages::shadow::DepthMaps;
 use crate::stages::visibility::SkyMemory;
@@ -36,6 +39,7 @@ pub struct Body {
     tree: Tree,
     bounds: PoseBounds,
     kernel: KernelTexture,
+    table: KernelTableLayout,
     shadows: ShadowOptions,
     /// The narrowest limit of the device that shadows run into.
     limits: wgpu::Limits,
@@ -46,6 +50,11 @@ pub struct Body {
     list_entries: u32,
     /// Made for the first frame whose method needs it.
     dual: Option<DualMemory>,
+    shape: Shape,
+    evaluate: Evaluate,
+    /// Where the last frame evaluated.
+    evaluated: Evaluate,
+    need: NeedLayout,
     model: Mat4,
     /// [`Profile::exit_scale`] of profile and medium: an integral too long for every picture.
     pub(crate) exit_scale: f32,
@@ -62,8 +71,10 @@ pub struct Body {
     owners: Vec<usize>,
     sky: SkyMemory,
     pending: StageSet,
-    /// Whether the kernel table no longer fits the medium, or the scatter uniforms the method.
+    /// Whether the kernel table no longer fits the medium.
     scatter_stale: bool,
+    /// Whether the scatter uniforms no longer fit the method.
+    method_stale: bool,
     /// Whether light now enters the surface differently.
     surface_stale: bool,
     shadows_stale: bool,
@@ -91,9 +102,7 @@ impl Body {
         extent.check(&device.limits())?;
 
         let tree = Tree::new(extent.texels);
-        if matches!(method, Method::Dual { .. }) {
-            dual::check(&tree, &device.limits())?;
-        }
+        check_method(&tree, method, descriptor.evaluate, &device.limits())?;
         let buffers = Buffers::new(device, mesh, atlas, &tree);
         let exitance = stages.resolve.texture(device, atlas.size);
         let exitance_view = exitance.create_view(&wgpu::TextureViewDescriptor::default());
@@ -114,6 +123,7 @@ impl Body {
             tree,
             bounds: PoseBounds::new(mesh),
             kernel,
+            table: KernelTableLayout::default(),
             shadows,
             limits: device.limits(),
             medium,
@@ -121,6 +131,10 @@ impl Body {
             method,
             list_entries: descriptor.list_entries,
             dual: None,
+            shape: Shape::new(mesh, atlas),
+            evaluate: descriptor.evaluate,
+            evaluated: Evaluate::PerTexel,
+            need: NeedLayout::default(),
             model: Mat4::IDENTITY,
             exit_scale: profile.exit_scale(medium.ior),
             pose: Pose::rest(&extent),
@@ -134,6 +148,7 @@ impl Body {
             sky: SkyMemory::new(&shadows),
             pending: StageSet::default(),
             scatter_stale: true,
+            method_stale: true,
             surface_stale: true,
             shadows_stale: false,
             never_prepared: true,
@@ -161,6 +176,7 @@ impl Body {
             Lighting::Irradiance(buffer) => (&[], Some(buffer)),
         };
         frame::validate_lights(lights)?;
+        frame.view.map_or(Ok(()), |view| view.validate())?;
         if let Some(buffer) = host_irradiance {
             frame::validate_irradiance(buffer, self.extent.texels)?;
         }
@@ -225,6 +241,7 @@ impl Body {
         self.never_prepared = false;
         self.surface_stale = false;
         self.shadows_stale = false;
+        self.place_evaluation(queue, frame, &corners);
         self.refresh_kernel(device, queue, frame::diagonal(&corners));
         Ok(())
     }
@@ -281,12 +298,26 @@ impl Body {
     /// [`Error::Frame`] for an opening angle outside its range, [`Error::Limit`] where the device cannot hold what the method remembers.
     pub fn set_method(&mut self, method: Method) -> Result<(), Error> {
         method.validate()?;
-        if matches!(method, Method::Dual { .. }) {
-            dual::check(&self.tree, &self.limits)?;
-        }
-        self.scatter_stale |= method != self.method;
+        check_method(&self.tree, method, self.evaluate, &self.limits)?;
+        self.method_stale |= method != self.method;
         self.method = method;
         Ok(())
+    }
+
+    /// Changes where exitance is evaluated; the next frame scatters anew if that is elsewhere.
+    ///
+    /// # Errors
+    /// [`Error::Frame`] where the method has no points, [`Error::Limit`] where the device cannot hold what it remembers.
+    pub fn set_evaluate(&mut self, evaluate: Evaluate) -> Result<(), Error> {
+        check_method(&self.tree, self.method, evaluate, &self.limits)?;
+        self.evaluate = evaluate;
+        Ok(())
+    }
+
+    /// Where the last prepared frame is evaluated; never [`Evaluate::Auto`].
+    #[must_use]
+    pub fn evaluated(&self) -> Evaluate {
+        self.evaluated
     }
 
     /// The medium.
@@ -317,8 +348,7 @@ impl Body {
     /// What the stages wrote, for copies and read-back.
     #[must_use]
     pub fn outputs(&self) -> Outputs<'_> {
-        let lists = self.dual.as_ref().map(|memory| &memory.lists);
-        self.buffers.outputs(&self.depth_maps, lists)
+        self.buffers.outputs(&self.depth_maps, self.dual.as_ref())
     }
 
     fn upload_pose(&self, queue: &wgpu::Queue, to_mm: Mat4) {
@@ -367,25 +397,52 @@ impl Body {
         self.sky.prepare(queue, subject, &self.shadows)
     }
 
-    /// Makes the kernel table anew where the medium changed or the body outgrew it.
+    /// Makes the kernel table anew where the medium changed or the body outgrew it, and what depends on the method.
     fn refresh_kernel(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, diagonal: f32) {
-        if !self.scatter_stale && self.kernel.fits(diagonal) {
+        let outgrown = self.scatter_stale || !self.kernel.fits(diagonal);
+        if !outgrown && !self.method_stale {
             return;
         }
         let channels = [0, 1, 2].map(|channel| Dipole::new(&self.medium, channel));
-        let table = self.kernel.write(queue, &channels, diagonal);
-        let layout = Scatter::layout(table, &channels, &self.tree, self.method);
-        // A single texel has no tree.
-        if let (Method::Dual { theta }, 1..) = (self.method, self.tree.top_level()) {
+        if outgrown {
+            self.table = self.kernel.write(queue, &channels, diagonal);
+        }
+        let layout = Scatter::layout(self.table, &channels, &self.tree, self.method);
+        if let Some(theta) = self.dual_theta() {
             let (stage, tree) = (&self.stages.scatter.dual, &self.tree);
-            let memory = self.dual.get_or_insert_with(|| {
-                stage.memory(device, &self.buffers, &self.kernel.view, tree, self.list_entries)
-            });
-            memory.write(queue, &layout, &self.tree, theta);
+            let demand = Demand { list_entries: self.list_entries, theta, evaluate: self.evaluated };
+            self.dual = self.dual.take().filter(|memory| memory.serves(demand, tree, &self.limits));
+            let memory = self
+                .dual
+                .get_or_insert_with(|| stage.memory(device, &self.buffers, &self.kernel.view, tree, demand));
+            memory.write(queue, &layout, tree, theta);
         }
         let uniforms = Scatter::uniforms(layout);
         queue.write_buffer(&self.buffers.scatter_uniforms, 0, &uniforms);
         self.pending.insert(StageSet::from_stage_on(Stage::Scatter));
         self.scatter_stale = false;
+        self.method_stale = false;
+    }
+
+    /// Opening angle of the dual scatter, where that is the method and the body has a tree.
+    fn dual_theta(&self) -> Option<f32> {
+        match self.method.resolved() {
+            Method::Dual { theta } if self.tree.top_level() > 0 => Some(theta),
+            _ => None,
+        }
+    }
+}
+
+/// Whether exitance can be evaluated there, and the device can hold what the method remembers.
+fn check_method(tree: &Tree, method: Method, evaluate: Evaluate, limits: &wgpu::Limits) -> Result<(), Error> {
+    if matches!(method.resolved(), Method::Dual { .. }) {
+        return dual::check(tree, evaluate, limits);
+    }
+    match evaluate {
+        Evaluate::PerTexel | Evaluate::Auto => Ok(()),
+        Evaluate::PerVertex | Evaluate::PerFragment => Err(Error::Frame {
+            problem: format!("{method:?} evaluated {evaluate:?}"),
+            remedy: "use the dual scatter, or evaluate per texel",
+        }),
     }
 }

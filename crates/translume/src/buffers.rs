@@ -4,12 +4,14 @@ use crate::Error;
 use crate::gpu::{self, UNIFORM_STRIDE};
 use crate::layout::{
     AtlasVertexLayout, Cluster, DeformLayout, GatherLayout, InfluenceLayout, LampLayout, LightPointLayout,
-    ReceiverLayout, TexelLayout,
+    NeedLayout, ReceiverLayout, TexelLayout,
 };
 use crate::light_points::{LightPoint, light_points};
 use crate::stages::cluster::Tree;
 use crate::stages::scatter::SOURCES_PER_DISPATCH;
+use crate::stages::scatter::dual::DualMemory;
 use crate::stages::shadow::DepthMaps;
+use crate::standing::Standing;
 use glam::Vec3;
 use translume_mesh::normals::{NormalAdjacency, smooth_normals};
 use translume_mesh::{Atlas, Mesh};
@@ -33,6 +35,9 @@ pub(crate) struct Buffers {
     pub texel_normals: wgpu::Buffer,
     pub irradiance: wgpu::Buffer,
     pub cluster_uniforms: wgpu::Buffer,
+    pub need: wgpu::Buffer,
+    pub vertex_texels: wgpu::Buffer,
+    pub under_vertices: wgpu::Buffer,
     pub clusters: wgpu::Buffer,
     pub receivers: wgpu::Buffer,
     pub bounds: wgpu::Buffer,
@@ -147,6 +152,7 @@ impl Buffers {
         let atlas_vertices: Vec<_> =
             atlas.vertices.iter().map(|v| AtlasVertexLayout { xref: v.xref, uv: v.uv }).collect();
         let atlas_indices: Vec<u32> = atlas.triangles.iter().flatten().copied().collect();
+        let standing = Standing::new(mesh, atlas);
         let dispatches = extent.texels.div_ceil(SOURCES_PER_DISPATCH).max(1);
 
         let positions = device.create_buffer(&wgpu::BufferDescriptor {
@@ -183,6 +189,9 @@ impl Buffers {
                 BufferUsages::UNIFORM,
                 &tree.uniforms(),
             ),
+            need: gpu::uniform_buffer(device, "need", size_of::<NeedLayout>() as u64),
+            vertex_texels: storage("vertex texels", &standing.texels),
+            under_vertices: storage("under vertices", &standing.bits),
             clusters: gpu::buffer(
                 device,
                 "clusters",
@@ -204,7 +213,7 @@ impl Buffers {
         }
     }
 
-    pub fn outputs<'a>(&'a self, depth_maps: &'a DepthMaps, lists: Option<&'a wgpu::Buffer>) -> Outputs<'a> {
+    pub fn outputs<'a>(&'a self, depth_maps: &'a DepthMaps, dual: Option<&'a DualMemory>) -> Outputs<'a> {
         Outputs {
             positions: &self.positions,
             normals: &self.normals,
@@ -214,7 +223,8 @@ impl Buffers {
             irradiance: &self.irradiance,
             clusters: &self.clusters,
             exitance: &self.exitance,
-            lists,
+            vertex_exitance: dual.and_then(DualMemory::vertex_exitance),
+            lists: dual.map(|memory| &memory.lists),
         }
     }
 }
@@ -231,7 +241,7 @@ pub struct Outputs<'a> {
     pub depth_maps: &'a wgpu::Texture,
     /// Position of each texel, mm, and its live area, mm².
     pub texel_positions: &'a wgpu::Buffer,
-    /// Unit shading normal of each texel.
+    /// Unit shading normal of each texel, and the cosine of how far the triangles under it lean from it.
     pub texel_normals: &'a wgpu::Buffer,
     /// Irradiance E of each texel, RGB.
     pub irradiance: &'a wgpu::Buffer,
@@ -240,6 +250,8 @@ pub struct Outputs<'a> {
     /// Radiant exitance B of each texel, RGB; from [`Method::Dual`](crate::Method::Dual) with the number of kernel evaluations, where a
     /// group's are shared out among its texels.
     pub exitance: &'a wgpu::Buffer,
+    /// With [`Evaluate::PerVertex`](crate::Evaluate::PerVertex): radiant exitance B of each vertex, RGB, and kernel evaluations.
+    pub vertex_exitance: Option<&'a wgpu::Buffer>,
     /// Once [`Method::Dual`](crate::Method::Dual) was used: its lists of open sources. The first word is how many words they
     /// would have filled, the second how many groups of receivers found no room. Those do not err, but take longer: their texels
     /// walk the tree on their own.

@@ -1,7 +1,7 @@
 //! What a body is made of.
 
 use crate::bounds::WEIGHT_SLACK;
-use crate::{Error, Medium, Method, Profile, ShadowOptions};
+use crate::{Error, Evaluate, Medium, Method, Profile, ShadowOptions};
 use translume_mesh::{Atlas, Influence, Mesh, Skin};
 
 /// What a body is made of and how it is computed.
@@ -18,10 +18,12 @@ pub struct BodyDescriptor<'a> {
     /// How the scatter sum is evaluated.
     pub method: Method,
     /// Memory of [`Method::Dual`] for open sources, in entries of four bytes per texel, 0..=1024; no more than one storage binding
-    /// holds are made. What finds no room takes longer, but is not lost
+    /// holds are made, and more at smaller opening angles. What finds no room takes longer, but is not lost
     /// ([`Outputs::lists`](crate::Outputs::lists) counts it); the same input then need not give the same bits. Bodies lit from
     /// everywhere took 6 to 17 at θ = 0.75.
     pub list_entries: u32,
+    /// Where exitance is evaluated.
+    pub evaluate: Evaluate,
     /// Millimetres per world unit: 1000 for an engine that counts in metres. Finite, > 0.
     pub mm_per_unit: f32,
     /// Whether each triangle keeps its own normal instead of the smooth vertex normals.
@@ -41,6 +43,7 @@ impl<'a> BodyDescriptor<'a> {
             profile: Profile::default(),
             method: Method::default(),
             list_entries: 32,
+            evaluate: Evaluate::default(),
             mm_per_unit: 1000.0,
             flat_normals: false,
             shadows: ShadowOptions::default(),

@@ -1,7 +1,7 @@
 //! What changes from frame to frame.
 
 use crate::layout::{MAX_AMBIENTS, MAX_LIGHTS};
-use crate::{Error, Light, Region};
+use crate::{Error, Light, Region, View};
 use glam::{Mat4, Vec3};
 use translume_mesh::{Warp, rig};
 
@@ -18,6 +18,9 @@ pub struct Frame<'a> {
     pub lighting: Lighting<'a>,
     /// What else casts shadows on the body: the host draws it, see [`Body::encode_with`](crate::Body::encode_with).
     pub casters: Option<Casters>,
+    /// The only picture of the body in this frame, if there is but one. What it cannot show is then not scattered, and the exitance there is 0;
+    /// a camera that moves makes clusters and scatter run again. `None` serves any number of pictures.
+    pub view: Option<View>,
 }
 
 /// Opaque things of the host that cast shadows on a body.
@@ -75,6 +78,7 @@ impl Default for Frame<'_> {
             warp: Warp::default(),
             lighting: Lighting::Lights(&[]),
             casters: None,
+            view: None,
         }
     }
 }

@@ -82,11 +82,12 @@ pub(crate) fn module(device: &wgpu::Device, shader: translume_shaders::Shader) -
 pub(crate) fn pipeline_layout(
     device: &wgpu::Device,
     label: &str,
-    group: &wgpu::BindGroupLayout,
+    groups: &[&wgpu::BindGroupLayout],
 ) -> wgpu::PipelineLayout {
+    let groups: Vec<_> = groups.iter().copied().map(Some).collect();
     device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
         label: Some(label),
-        bind_group_layouts: &[Some(group)],
+        bind_group_layouts: &groups,
         immediate_size: 0,
     })
 }
@@ -108,9 +109,21 @@ pub(crate) fn specialised_pipeline(
     entry_point: &str,
     constants: &[(&str, f64)],
 ) -> wgpu::ComputePipeline {
+    let layout = pipeline_layout(device, entry_point, &[layout]);
+    pipeline_with(device, &layout, module, entry_point, constants)
+}
+
+/// With any layout.
+pub(crate) fn pipeline_with(
+    device: &wgpu::Device,
+    layout: &wgpu::PipelineLayout,
+    module: &wgpu::ShaderModule,
+    entry_point: &str,
+    constants: &[(&str, f64)],
+) -> wgpu::ComputePipeline {
     device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
         label: Some(entry_point),
-        layout: Some(&pipeline_layout(device, entry_point, layout)),
+        layout: Some(layout),
         module,
         entry_point: Some(entry_point),
         compilation_options: wgpu::PipelineCompilationOptions { constants, ..Default::default() },
@@ -152,6 +165,11 @@ impl<'a> Pass<'a> {
     /// Group 0.
     pub fn set_bind_group(&mut self, group: &wgpu::BindGroup, offsets: &[u32]) {
         self.pass.set_bind_group(0, group, offsets);
+    }
+
+    /// Group 1.
+    pub fn set_second_group(&mut self, group: &wgpu::BindGroup) {
+        self.pass.set_bind_group(1, group, &[]);
     }
 
     /// One invocation per item, in rows where one row is too long.

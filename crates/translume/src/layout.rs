@@ -157,6 +157,15 @@ pub(crate) struct LightPointLayout {
     pub weights: u32,
 }
 
+/// Which texels are needed as receivers.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub(crate) struct NeedLayout {
+    pub view_projection: [[f32; 4]; 4],
+    pub eye: [f32; 3],
+    pub kind: u32,
+}
+
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub(crate) struct LevelLayout {
@@ -203,7 +212,8 @@ pub(crate) struct DualLayout {
     pub z_r_squared: f32,
     pub capacity: u32,
     pub first_receiver: u32,
-    pub padding: [u32; 3],
+    pub first_expansion: u32,
+    pub padding: [u32; 2],
     pub offsets: [[u32; 4]; 4],
     pub sources: [[u32; 4]; 4],
 }
@@ -369,6 +379,7 @@ mod tests {
             LevelLayout,
             [child_count, node_count, child_offset, node_offset, source_offset, receiver_offset]
         );
+        check!(CLUSTER, "Need", NeedLayout, [view_projection, eye, kind]);
         check!(CLUSTER, "Cluster", Cluster, [centroid, spread, power, radius, normal, area]);
         check!(SCATTER, "KernelTable", KernelTableLayout, [least_r2, least_s2, columns, rows]);
         check!(
@@ -398,6 +409,7 @@ mod tests {
                 z_r_squared,
                 capacity,
                 first_receiver,
+                first_expansion,
                 offsets,
                 sources
             ]

@@ -39,6 +39,7 @@ mod camera;
 mod descriptor;
 mod environment;
 mod error;
+mod evaluate;
 mod frame;
 mod fresnel;
 mod gpu;
@@ -55,6 +56,7 @@ pub mod readback;
 mod shadow_options;
 mod shadow_view;
 mod stages;
+mod standing;
 
 pub use area_light::{RectangleLight, SphereLight};
 pub use body::Body;
@@ -63,6 +65,7 @@ pub use camera::{Camera, LookAt};
 pub use descriptor::BodyDescriptor;
 pub use environment::{EnvironmentLight, EnvironmentMap};
 pub use error::Error;
+pub use evaluate::{Evaluate, View};
 pub use frame::{Casters, Deformation, Frame, Lighting};
 pub use gpu::Work;
 pub use layout::Cluster;
@@ -103,7 +106,7 @@ impl Translume {
     /// Pipelines that draw bodies into this kind of target.
     #[must_use]
     pub fn composite(&self, device: &wgpu::Device, target: CompositeTarget) -> Composite {
-        Composite::new(device, target)
+        Composite::new(device, &self.stages.scatter.dual.points, target)
     }
 }
 

@@ -12,6 +12,7 @@ mod composite;
 mod deform;
 mod dual;
 mod errors;
+mod evaluate;
 mod furnace;
 mod gather;
 mod golden;

@@ -101,14 +101,14 @@ impl Body {
         }
         if pending.contains(Stage::Scatter) {
             let mut pass = Pass::begin(encoder, "scatter", &mut work);
-            match (&self.dual, self.method) {
+            match (&self.dual, self.method.resolved()) {
                 (Some(memory), Method::Dual { .. }) => {
-                    stages.scatter.dual.encode(&mut pass, memory, &self.tree);
+                    stages.scatter.dual.encode(&mut pass, memory, &self.tree, self.extent.vertices);
                 }
                 _ => stages.scatter.encode(&mut pass, &self.scatter_group, self.method, texels),
             }
         }
-        if pending.contains(Stage::Resolve) {
+        if pending.contains(Stage::Resolve) && self.points().is_none() {
             stages.resolve.encode(
                 &mut Pass::begin(encoder, "resolve", &mut work),
                 &self.resolve_group,

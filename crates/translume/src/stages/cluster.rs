@@ -1,10 +1,10 @@
 //! Cluster: the texels summed up their tree, four to one, level by level.
 //!
-//! reads  texel positions, normals, irradiance      writes  clusters of every level
+//! reads  texel positions, normals, irradiance, which texels are needed      writes  clusters, receivers, bounds and lamps of every level
 //! twin   `translume_reference::cluster`            WGSL    `cluster.wgsl`
 
 use crate::buffers::Buffers;
-use crate::gpu::{self, Pass, READ, UNIFORM_ARRAY, UNIFORM_STRIDE, WRITE};
+use crate::gpu::{self, Pass, READ, UNIFORM, UNIFORM_ARRAY, UNIFORM_STRIDE, WRITE};
 use crate::layout::LevelLayout;
 
 pub(crate) struct ClusterStage {
@@ -80,7 +80,7 @@ impl Tree {
 
 impl ClusterStage {
     pub fn new(device: &wgpu::Device) -> Self {
-        let types = [UNIFORM_ARRAY, READ, READ, READ, WRITE, WRITE, WRITE, WRITE];
+        let types = [UNIFORM_ARRAY, READ, READ, READ, WRITE, WRITE, WRITE, WRITE, UNIFORM, READ];
         let layout = gpu::layout(device, "cluster", wgpu::ShaderStages::COMPUTE, &types);
         let module = gpu::module(device, translume_shaders::CLUSTER);
         Self {
@@ -100,6 +100,8 @@ impl ClusterStage {
             buffers.receivers.as_entire_binding(),
             buffers.bounds.as_entire_binding(),
             buffers.lamps.as_entire_binding(),
+            buffers.need.as_entire_binding(),
+            buffers.under_vertices.as_entire_binding(),
         ];
         gpu::bind(device, "cluster", &self.layout, &resources)
     }

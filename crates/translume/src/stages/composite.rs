@@ -1,12 +1,14 @@
 //! Composite: the camera's view of a body, L_o = F_t(η, ω_o)·B/π, and what its surface reflects.
 //!
-//! reads  positions, normals, exitance texture       writes  the host's colour and depth attachments
+//! reads  positions, normals, exitance of texels, vertices or points       writes  the host's colour and depth attachments
 //! twin   `translume_reference::composite`           WGSL    `composite.wgsl`
 
 use crate::gpu::{self, DEPTH_MAPS, FLOAT_TEXTURE, READ, UNIFORM};
 use crate::layout::{AtlasVertexLayout, CompositeLayout};
+use crate::stages::scatter::points::{PointMemory, Points};
 use crate::{Body, Camera};
 use glam::{Mat4, Vec3};
+use std::sync::OnceLock;
 use wgpu::ShaderStages;
 
 /// What the host draws into.
@@ -45,9 +47,26 @@ pub enum Gloss {
 
 /// Draws bodies into one kind of target.
 pub struct Composite {
+    device: wgpu::Device,
     layout: wgpu::BindGroupLayout,
-    smooth: wgpu::RenderPipeline,
-    flat: wgpu::RenderPipeline,
+    target: CompositeTarget,
+    /// Of exitance at texels, at vertices and at fragments.
+    kinds: [Kind; 3],
+    depth: wgpu::PipelineLayout,
+    /// Draws depth before exitance is summed up at fragments.
+    depth_alone: OnceLock<wgpu::RenderPipeline>,
+}
+
+const TEXELS: usize = 0;
+const VERTICES: usize = 1;
+const FRAGMENTS: usize = 2;
+
+/// What draws one kind of exitance.
+struct Kind {
+    layout: wgpu::PipelineLayout,
+    shader: translume_shaders::Shader,
+    /// For smooth normals and for flat ones, made when a body first needs them.
+    pipelines: [OnceLock<wgpu::RenderPipeline>; 2],
 }
 
 /// One body seen by one camera.
@@ -61,15 +80,50 @@ pub struct CompositeView {
     indices: wgpu::Buffer,
     index_count: u32,
     flat: bool,
+    kind: usize,
+    /// Of exitance at points.
+    points: Option<wgpu::BindGroup>,
 }
 
 impl Composite {
-    pub(crate) fn new(device: &wgpu::Device, target: CompositeTarget) -> Self {
+    pub(crate) fn new(device: &wgpu::Device, points: &Points, target: CompositeTarget) -> Self {
         let types = [UNIFORM, READ, READ, FLOAT_TEXTURE, UNIFORM, DEPTH_MAPS];
         let layout = gpu::layout(device, "composite", ShaderStages::VERTEX_FRAGMENT, &types);
-        let module = gpu::module(device, translume_shaders::COMPOSITE);
-        let pipeline = |flat| pipeline(device, &layout, &module, target, flat);
-        Self { smooth: pipeline(false), flat: pipeline(true), layout }
+        let kind = |shader, second: Option<&wgpu::BindGroupLayout>| Kind {
+            layout: gpu::pipeline_layout(
+                device,
+                "composite",
+                &std::iter::once(&layout).chain(second).collect::<Vec<_>>(),
+            ),
+            shader,
+            pipelines: <[OnceLock<_>; 2]>::default(),
+        };
+        let kinds = [
+            kind(translume_shaders::COMPOSITE, None),
+            kind(translume_shaders::COMPOSITE_VERTICES, Some(&points.seen)),
+            kind(translume_shaders::COMPOSITE_FRAGMENTS, Some(&points.field)),
+        ];
+        let depth = kind(translume_shaders::COMPOSITE, None).layout;
+        let composite =
+            Self { device: device.clone(), layout, target, kinds, depth, depth_alone: OnceLock::new() };
+        for flat in [false, true] {
+            composite.pipeline(TEXELS, flat);
+        }
+        composite
+    }
+
+    fn pipeline(&self, kind: usize, flat: bool) -> &wgpu::RenderPipeline {
+        let Kind { layout, shader, pipelines } = &self.kinds[kind];
+        pipelines[usize::from(flat)].get_or_init(|| {
+            let pass = Pass::Picture { flat, after_depth: kind == FRAGMENTS };
+            pipeline(&self.device, layout, *shader, self.target, pass)
+        })
+    }
+
+    fn depth_pipeline(&self) -> &wgpu::RenderPipeline {
+        self.depth_alone.get_or_init(|| {
+            pipeline(&self.device, &self.depth, translume_shaders::COMPOSITE, self.target, Pass::DepthAlone)
+        })
     }
 
     /// Binds a body for drawing. Needed once per body and camera.
@@ -85,15 +139,24 @@ impl Composite {
             indices: body.buffers.atlas_indices.clone(),
             index_count: body.extent.triangles * 3,
             flat: body.flat_normals,
+            kind: TEXELS,
+            points: None,
         }
     }
 
-    /// Records one draw. Call [`CompositeView::prepare`] before the pass begins.
+    /// Records one draw, or two where exitance is summed up at fragments. Call [`CompositeView::prepare`] before the pass begins.
     pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>, view: &CompositeView) {
-        pass.set_pipeline(if view.flat { &self.flat } else { &self.smooth });
         pass.set_bind_group(0, &view.group, &[]);
         pass.set_vertex_buffer(0, view.vertices.slice(..));
         pass.set_index_buffer(view.indices.slice(..), wgpu::IndexFormat::Uint32);
+        if view.kind == FRAGMENTS && self.target.depth.is_some() {
+            pass.set_pipeline(self.depth_pipeline());
+            pass.draw_indexed(0..view.index_count, 0, 0..1);
+        }
+        pass.set_pipeline(self.pipeline(view.kind, view.flat));
+        if let Some(points) = &view.points {
+            pass.set_bind_group(1, points, &[]);
+        }
         pass.draw_indexed(0..view.index_count, 0, 0..1);
     }
 }
@@ -112,6 +175,12 @@ impl CompositeView {
             self.group = bind(device, &self.layout, &self.uniform, body);
             self.depth_maps = body.depth_maps.texture.clone();
         }
+        self.points = body.points().map(|points| points.drawn().clone());
+        self.kind = match body.points() {
+            None => TEXELS,
+            Some(PointMemory::Vertices { .. }) => VERTICES,
+            Some(PointMemory::Fragments { .. }) => FRAGMENTS,
+        };
         let to_world = Mat4::from_scale(Vec3::splat(1.0 / body.mm_per_unit));
         let uniform = CompositeLayout {
             view_projection: (Mat4::from_cols_array_2d(&camera.view_projection) * to_world)
@@ -147,13 +216,33 @@ fn bind(
     gpu::bind(device, "composite", layout, &resources)
 }
 
+#[derive(Clone, Copy)]
+enum Pass {
+    Picture { flat: bool, after_depth: bool },
+    DepthAlone,
+}
+
+/// What lets a fragment through that is as near as the depth pass found it.
+fn or_equal(compare: wgpu::CompareFunction) -> wgpu::CompareFunction {
+    match compare {
+        wgpu::CompareFunction::Less => wgpu::CompareFunction::LessEqual,
+        wgpu::CompareFunction::Greater => wgpu::CompareFunction::GreaterEqual,
+        other => other,
+    }
+}
+
 fn pipeline(
     device: &wgpu::Device,
-    layout: &wgpu::BindGroupLayout,
-    module: &wgpu::ShaderModule,
+    layout: &wgpu::PipelineLayout,
+    shader: translume_shaders::Shader,
     target: CompositeTarget,
-    flat: bool,
+    pass: Pass,
 ) -> wgpu::RenderPipeline {
+    let module = &gpu::module(device, shader);
+    let (entry_point, flat, after_depth, write_mask) = match pass {
+        Pass::Picture { flat, after_depth } => ("fragment", flat, after_depth, wgpu::ColorWrites::ALL),
+        Pass::DepthAlone => ("depth_alone", false, false, wgpu::ColorWrites::empty()),
+    };
     let constants = [("FLAT_NORMALS", f64::from(u8::from(flat)))];
     let vertex = wgpu::VertexBufferLayout {
         array_stride: size_of::<AtlasVertexLayout>() as u64,
@@ -162,7 +251,7 @@ fn pipeline(
     };
     device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: Some("composite"),
-        layout: Some(&gpu::pipeline_layout(device, "composite", layout)),
+        layout: Some(layout),
         vertex: wgpu::VertexState {
             module,
             entry_point: Some("vertex"),
@@ -174,19 +263,19 @@ fn pipeline(
         depth_stencil: target.depth.map(|(format, compare)| wgpu::DepthStencilState {
             format,
             depth_write_enabled: Some(true),
-            depth_compare: Some(compare),
+            depth_compare: Some(if after_depth { or_equal(compare) } else { compare }),
             stencil: wgpu::StencilState::default(),
             bias: wgpu::DepthBiasState::default(),
         }),
         multisample: wgpu::MultisampleState { count: target.samples, ..Default::default() },
         fragment: Some(wgpu::FragmentState {
             module,
-            entry_point: Some("fragment"),
+            entry_point: Some(entry_point),
             compilation_options: wgpu::PipelineCompilationOptions {
                 constants: &constants,
                 ..Default::default()
             },
-            targets: &[Some(target.format.into())],
+            targets: &[Some(wgpu::ColorTargetState { format: target.format, blend: None, write_mask })],
         }),
         multiview_mask: None,
         cache: None,

@@ -50,7 +50,7 @@ impl Shadow {
         };
         let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
             label: Some("shadow"),
-            layout: Some(&gpu::pipeline_layout(device, "shadow", &layout)),
+            layout: Some(&gpu::pipeline_layout(device, "shadow", &[&layout])),
             vertex: wgpu::VertexState {
                 module: &module,
                 entry_point: Some("vertex"),

@@ -1,10 +1,12 @@
 //! Dual: the scatter sum with groups of texels at both ends, level by level from the coarsest receivers to the texels.
 //!
-//! reads  bounds and lamps of the tree, kernel table      writes  exitance per texel, linear RGB
+//! reads  bounds and lamps of the tree, kernel table      writes  exitance per texel, linear RGB, or what points need
 //! judge  `Method::AllPairs` on the same adapter          WGSL    `dual.wgsl`
 
+use super::points::{Field, PointMemory, Points};
 use crate::Error;
 use crate::buffers::Buffers;
+use crate::evaluate::Evaluate;
 use crate::gpu::{self, FLOAT_TEXTURE, Pass, READ, UNIFORM_ARRAY, UNIFORM_STRIDE, WRITE};
 use crate::layout::{DualLayout, ScatterLayout};
 use crate::stages::cluster::Tree;
@@ -14,6 +16,8 @@ const LEAST_RECEIVERS: u32 = 64;
 /// Opening angle of single texels over that of groups: they test the source's size alone. At θ = 0.8 a ratio of 0.51 raises the error of
 /// skin1 on the creature at 256² from 0.5 % to 1.0 % and saves a seventh of the time; 0.35 hardly gains.
 const LEAF_THETA: f32 = 0.4;
+/// Opening angle for which [`BodyDescriptor::list_entries`](crate::BodyDescriptor::list_entries) counts.
+const DEFAULT_THETA: f32 = 0.75;
 /// Bytes in front of the lists.
 const LISTS_HEADER: u64 = 16;
 /// Words of the empty list and the list of the root.
@@ -26,6 +30,7 @@ pub(crate) struct Dual {
     start: wgpu::ComputePipeline,
     inner: wgpu::ComputePipeline,
     leaf: wgpu::ComputePipeline,
+    pub points: Points,
 }
 
 /// What the dual scatter of one body remembers during a frame.
@@ -35,6 +40,19 @@ pub(crate) struct DualMemory {
     group: wgpu::BindGroup,
     start_level: u32,
     capacity: u32,
+    first_expansion: u32,
+    evaluate: Evaluate,
+    /// Where exitance is evaluated at points.
+    pub points: Option<PointMemory>,
+}
+
+/// What decides how much memory a body's dual scatter needs.
+#[derive(Clone, Copy)]
+pub(crate) struct Demand {
+    /// Words of the lists per texel at the default opening angle.
+    pub list_entries: u32,
+    pub theta: f32,
+    pub evaluate: Evaluate,
 }
 
 /// Level of the coarsest receivers; 0 where texels are too few for groups of them.
@@ -43,23 +61,32 @@ fn start_level(tree: &Tree) -> u32 {
 }
 
 /// Words for the lists: as many as wished, as a binding holds, and as the 28 bits of a link can tell apart. Too few only cost time.
-fn capacity(texels: u32, entries_per_texel: u32, limits: &wgpu::Limits) -> u32 {
-    let room = (binding(limits) - LISTS_HEADER) / 4;
-    texels.saturating_mul(entries_per_texel).saturating_add(ROOT).min(1 << 28).min(room as u32)
+fn capacity(texels: u32, demand: Demand, limits: &wgpu::Limits) -> u32 {
+    let room = ((binding(limits) - LISTS_HEADER) / 4).min(1 << 28);
+    let growth = (DEFAULT_THETA / demand.theta).max(1.0).powi(2);
+    let wished = f64::from(texels) * f64::from(demand.list_entries) * f64::from(growth);
+    (wished as u64 + u64::from(ROOT)).min(room) as u32
 }
 
 fn binding(limits: &wgpu::Limits) -> u64 {
     limits.max_storage_buffer_binding_size.min(limits.max_buffer_size).min(1 << 30)
 }
 
-/// Bytes of the expansions of all receivers from the second level on.
-fn expansions(tree: &Tree) -> u64 {
-    EXPANSION * u64::from(tree.counts.iter().skip(2).sum::<u32>().max(1))
+/// The first receiver whose expansion is kept: on the second level, for those of the first go straight to the texels; or on the first,
+/// for points.
+fn first_expansion(tree: &Tree, evaluate: Evaluate) -> u32 {
+    let level = if evaluate == Evaluate::PerTexel { 2 } else { 1 };
+    tree.offsets.get(level).copied().unwrap_or(0)
+}
+
+/// Bytes of the expansions.
+fn expansions(tree: &Tree, evaluate: Evaluate) -> u64 {
+    EXPANSION * u64::from((tree.clusters() - first_expansion(tree, evaluate)).max(1))
 }
 
 /// Whether the device can hold what the dual scatter remembers.
-pub(crate) fn check(tree: &Tree, limits: &wgpu::Limits) -> Result<(), Error> {
-    let (required, actual) = (expansions(tree), binding(limits));
+pub(crate) fn check(tree: &Tree, evaluate: Evaluate, limits: &wgpu::Limits) -> Result<(), Error> {
+    let (required, actual) = (expansions(tree, evaluate), binding(limits));
     if required <= actual {
         return Ok(());
     }
@@ -81,6 +108,7 @@ impl Dual {
             start: gpu::compute_pipeline(device, &layout, &module, "start"),
             inner: gpu::compute_pipeline(device, &layout, &module, "inner"),
             leaf: gpu::compute_pipeline(device, &layout, &module, "leaf"),
+            points: Points::new(device),
             layout,
         }
     }
@@ -92,12 +120,12 @@ impl Dual {
         buffers: &Buffers,
         kernel_table: &wgpu::TextureView,
         tree: &Tree,
-        entries_per_texel: u32,
+        demand: Demand,
     ) -> DualMemory {
         let start_level = start_level(tree);
-        let capacity = capacity(tree.counts[0], entries_per_texel, &device.limits());
+        let capacity = capacity(tree.counts[0], demand, &device.limits());
         let uniforms = gpu::uniform_buffer(device, "dual", UNIFORM_STRIDE * u64::from(start_level + 1));
-        let expansions = gpu::buffer(device, "expansions", expansions(tree));
+        let expansions = gpu::buffer(device, "expansions", expansions(tree, demand.evaluate));
         let heads = gpu::buffer(device, "heads", 4 * u64::from(tree.clusters()));
         let lists = gpu::buffer(device, "lists", LISTS_HEADER + 4 * u64::from(capacity));
         let resources = [
@@ -111,22 +139,44 @@ impl Dual {
             wgpu::BindingResource::TextureView(kernel_table),
         ];
         let group = gpu::bind(device, "dual", &self.layout, &resources);
-        DualMemory { uniforms, lists, group, start_level, capacity }
+        let field = Field {
+            uniforms: &uniforms,
+            expansions: &expansions,
+            heads: &heads,
+            lists: &lists,
+            kernel_table,
+        };
+        let points = self.points.memory(device, buffers, &field, demand.evaluate);
+        let (evaluate, first_expansion) = (demand.evaluate, first_expansion(tree, demand.evaluate));
+        DualMemory { uniforms, lists, group, start_level, capacity, first_expansion, evaluate, points }
     }
 
-    pub fn encode(&self, pass: &mut Pass<'_>, memory: &DualMemory, tree: &Tree) {
+    pub fn encode(&self, pass: &mut Pass<'_>, memory: &DualMemory, tree: &Tree, vertices: u32) {
         pass.set_pipeline(&self.start);
         pass.set_bind_group(&memory.group, &[0]);
         pass.dispatch_workgroups(1, 1);
-        for level in (0..=memory.start_level).rev() {
+        let last = u32::from(memory.points.is_some());
+        for level in (last..=memory.start_level).rev() {
             pass.set_pipeline(if level > 0 { &self.inner } else { &self.leaf });
             pass.set_bind_group(&memory.group, &[level * UNIFORM_STRIDE as u32]);
             pass.dispatch(tree.counts[level as usize]);
+        }
+        if let Some(points) = &memory.points {
+            self.points.encode(pass, points, vertices);
         }
     }
 }
 
 impl DualMemory {
+    /// Whether it serves this demand too.
+    pub fn serves(&self, demand: Demand, tree: &Tree, limits: &wgpu::Limits) -> bool {
+        self.evaluate == demand.evaluate && self.capacity >= capacity(tree.counts[0], demand, limits)
+    }
+
+    pub fn vertex_exitance(&self) -> Option<&wgpu::Buffer> {
+        self.points.as_ref().and_then(PointMemory::vertex_exitance)
+    }
+
     /// One uniform per level of receivers, ready for dynamic offsets.
     pub fn write(&self, queue: &wgpu::Queue, scatter: &ScatterLayout, tree: &Tree, theta: f32) {
         let stride = UNIFORM_STRIDE as usize;
@@ -147,7 +197,8 @@ impl DualMemory {
                 z_r_squared: scatter.z_r_squared,
                 capacity: self.capacity,
                 first_receiver: tree.sources(),
-                padding: [0; 3],
+                first_expansion: self.first_expansion,
+                padding: [0; 2],
                 offsets: scatter.offsets,
                 sources,
             };

@@ -1,0 +1,75 @@
+//! Where a frame's exitance is evaluated, and which texels it needs.
+
+use super::Body;
+use crate::Frame;
+use crate::evaluate::{Candidates, Evaluate, View};
+use crate::layout::NeedLayout;
+use crate::stages::scatter::points::PointMemory;
+use crate::stages::{Stage, StageSet};
+use glam::{Mat4, Vec3};
+
+/// As in `cluster.wgsl`.
+const IN_VIEW: u32 = 1;
+const FACING: u32 = 2;
+const UNDER_VERTICES: u32 = 4;
+const POINTS: u32 = 8;
+
+impl Body {
+    /// `corners` of the box around the body, mm.
+    pub(super) fn place_evaluation(&mut self, queue: &wgpu::Queue, frame: &Frame<'_>, corners: &[Vec3; 8]) {
+        let evaluate = self.choose(frame.view.as_ref(), corners);
+        self.method_stale |= evaluate != self.evaluated;
+        self.evaluated = evaluate;
+        let need = self.need(frame.view.as_ref());
+        if need != self.need {
+            queue.write_buffer(&self.buffers.need, 0, bytemuck::bytes_of(&need));
+            self.pending.insert(StageSet::from_stage_on(Stage::Cluster));
+            self.need = need;
+        }
+    }
+
+    /// A body without a tree is left to its texels.
+    fn choose(&self, view: Option<&View>, corners: &[Vec3; 8]) -> Evaluate {
+        if self.dual_theta().is_none() {
+            return Evaluate::PerTexel;
+        }
+        if self.evaluate != Evaluate::Auto {
+            return self.evaluate;
+        }
+        let [model_x, model_y, model_z] =
+            [self.model.x_axis, self.model.y_axis, self.model.z_axis].map(|axis| axis.truncate().length());
+        let scale = self.mm_per_unit * model_x.max(model_y).max(model_z);
+        Candidates {
+            texels: self.extent.texels,
+            vertices: self.extent.vertices,
+            edge: scale * self.shape.edge,
+            texel: scale * self.shape.texel,
+            path: self.medium.shortest_path(),
+            view,
+            corners: corners.map(|corner| corner / self.mm_per_unit),
+        }
+        .choose()
+    }
+
+    fn need(&self, view: Option<&View>) -> NeedLayout {
+        if self.evaluated == Evaluate::PerVertex {
+            return NeedLayout { kind: UNDER_VERTICES | POINTS, ..NeedLayout::default() };
+        }
+        let points = if self.evaluated == Evaluate::PerFragment { POINTS } else { 0 };
+        let Some(View { camera, .. }) = view.filter(|_| self.dual_theta().is_some()) else {
+            return NeedLayout { kind: points, ..NeedLayout::default() };
+        };
+        let to_world = Mat4::from_scale(Vec3::splat(1.0 / self.mm_per_unit));
+        NeedLayout {
+            view_projection: (Mat4::from_cols_array_2d(&camera.view_projection) * to_world)
+                .to_cols_array_2d(),
+            eye: camera.eye.map(|x| x * self.mm_per_unit),
+            kind: points | IN_VIEW | if self.shape.closed { FACING } else { 0 },
+        }
+    }
+
+    /// What a picture of the frame needs of exitance at points.
+    pub(crate) fn points(&self) -> Option<&PointMemory> {
+        self.dual.as_ref().filter(|_| self.dual_theta().is_some()).and_then(|memory| memory.points.as_ref())
+    }
+}

@@ -1,0 +1,58 @@
+// What the groups of receivers left: their expansions, and the sources they kept open.
+struct Lists {
+    taken: u32,
+    overflows: u32,
+    padding0: u32,
+    padding1: u32,
+    words: array<u32>,
+}
+
+@group(1) @binding(0) var<uniform> dual: Dual;
+@group(1) @binding(1) var<storage, read> bounds: array<vec4f>;
+@group(1) @binding(2) var<storage, read> lamps: array<Lamp>;
+@group(1) @binding(3) var<storage, read> expansions: array<Expansion>;
+@group(1) @binding(4) var<storage, read> heads: array<u32>;
+@group(1) @binding(5) var<storage, read> lists: Lists;
+// On which texel each vertex, or each pixel of the atlas, stands.
+@group(1) @binding(6) var<storage, read> standing: array<u32>;
+@group(1) @binding(7) var kernel_table: texture_2d<f32>;
+
+// Of a pixel without one, and of a point that is not the middle of one.
+const NO_TEXEL: u32 = 0xffffffffu;
+
+// Radiant exitance at any point on a texel. In w the kernel evaluations it took.
+fn exitance_at(receiver: vec3f, texel: u32) -> vec4f {
+    var sum = vec4f(0.0);
+    var head = ROOT_HEAD | UNDECIDED;
+    if dual.start_level > 0u {
+        let group = receiver_index(1u, texel / 4u);
+        let e = moved(expansions[group], receiver - bounds[dual.first_receiver + group].xyz);
+        sum = vec4f(e.value, e.evaluations);
+        head = heads[group];
+    }
+    let undecided = (head & UNDECIDED) != 0u;
+    head = packed_node(head);
+    var w = walk(head);
+    w.ended = head == 0u;
+    while !w.ended {
+        if undecided {
+            if w.done { turn_over(&w); }
+            if w.done { continue; }
+            let at = source_index(w.level, w.node);
+            let seen = bounds[at];
+            if w.level > 0u && too_large_for_a_texel(seen.w, receiver - seen.xyz) {
+                open(&w);
+                continue;
+            }
+            if seen.w > 0.0 { sum += sent(at, NO_TEXEL, receiver); }
+            pass_by(&w);
+            continue;
+        }
+        let word = lists.words[head];
+        let link = packed_level(word) == LINK;
+        head = select(head - 1u, packed_node(word), link);
+        w.ended = head == 0u;
+        if !link { sum += sent(word, NO_TEXEL, receiver); }
+    }
+    return max(sum, vec4f(0.0));
+}
