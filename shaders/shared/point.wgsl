@@ -24,9 +24,11 @@ const NO_TEXEL: u32 = 0xffffffffu;
 fn exitance_at(receiver: vec3f, texel: u32) -> vec4f {
     var sum = vec4f(0.0);
     var head = ROOT_HEAD | UNDECIDED;
-    if dual.start_level > 0u {
-        let group = receiver_index(1u, texel / 4u);
-        let e = moved(expansions[group], receiver - bounds[dual.first_receiver + group].xyz);
+    let group = texel / 4u;
+    let seen = bounds[dual.first_receiver + group];
+    // A group that nobody was expected to need left nothing.
+    if dual.start_level > 0u && seen.w != NOT_NEEDED {
+        let e = moved(expansions[group], receiver - seen.xyz);
         sum = vec4f(e.value, e.evaluations);
         head = heads[group];
     }
@@ -39,12 +41,12 @@ fn exitance_at(receiver: vec3f, texel: u32) -> vec4f {
             if w.done { turn_over(&w); }
             if w.done { continue; }
             let at = source_index(w.level, w.node);
-            let seen = bounds[at];
-            if w.level > 0u && too_large_for_a_texel(seen.w, receiver - seen.xyz) {
+            let source = bounds[at];
+            if w.level > 0u && too_large_for_a_texel(source.w, receiver - source.xyz) {
                 open(&w);
                 continue;
             }
-            if seen.w > 0.0 { sum += sent(at, NO_TEXEL, receiver); }
+            if source.w > 0.0 { sum += sent(at, NO_TEXEL, receiver); }
             pass_by(&w);
             continue;
         }
