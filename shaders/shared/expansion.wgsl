@@ -56,7 +56,14 @@ fn profile_jet(table: KernelTable, texels: texture_2d<f32>, r2: f32, s2: f32, fa
     // By ln r².
     let first = CELLS * 0.5 * mix(v[2] - v[0], v[3] - v[1], fx);
     let second = CELLS * CELLS * mix(v[2] - 2.0 * v[1] + v[0], v[3] - 2.0 * v[2] + v[1], fx);
-    let value = exp(mix(v[1], v[2], fx));
+    let logarithm = mix(v[1], v[2], fx);
+    if MONOCHROME {
+        let value = exp(logarithm.r);
+        let slope = value * first.r / r2;
+        let bend = value * (first.r * first.r + second.r - first.r) / r2 / r2;
+        return Jet(vec3f(value), vec3f(slope), vec3f(bend));
+    }
+    let value = exp(logarithm);
     return Jet(value, value * first / r2, value * (first * first + second - first) / r2 / r2);
 }
 

@@ -9,6 +9,9 @@ struct KernelTable {
     rows: u32,
 }
 
+// Whether the three channels are alike, so that one has to be evaluated.
+override MONOCHROME: bool = false;
+
 const R2_CELLS_PER_OCTAVE: f32 = 8.0;
 const S2_CELLS_PER_OCTAVE: f32 = 4.0;
 
@@ -46,5 +49,6 @@ fn area_averaged_profile(table: KernelTable, texels: texture_2d<f32>, r2: f32, s
         mix(textureLoad(texels, vec2i(column, facing_row), 0).rgb, textureLoad(texels, vec2i(column + 1, facing_row), 0).rgb, fx),
         mix(textureLoad(texels, vec2i(column, facing_row + 1), 0).rgb, textureLoad(texels, vec2i(column + 1, facing_row + 1), 0).rgb, fx),
         fy);
+    if MONOCHROME { return vec3f(mix(exp(lying.r), exp(upright.r), facing)); }
     return mix(exp(lying), exp(upright), facing);
 }

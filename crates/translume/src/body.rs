@@ -415,6 +415,7 @@ impl Body {
             let memory = self
                 .dual
                 .get_or_insert_with(|| stage.memory(device, &self.buffers, &self.kernel.view, tree, demand));
+            memory.monochrome = self.medium.is_monochrome();
             memory.write(queue, &layout, tree, theta);
         }
         let uniforms = Scatter::uniforms(layout);

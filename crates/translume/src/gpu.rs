@@ -1,6 +1,7 @@
 //! Short words for long wgpu descriptors.
 
 use std::borrow::Cow;
+use std::sync::OnceLock;
 use wgpu::BindingType;
 
 pub(crate) const fn storage(read_only: bool) -> BindingType {
@@ -130,6 +131,38 @@ pub(crate) fn pipeline_with(
         cache: None,
     })
 }
+
+/// A compute pipeline with and without `MONOCHROME`, each made when it is first needed.
+pub(crate) struct Chromatic {
+    device: wgpu::Device,
+    layout: wgpu::PipelineLayout,
+    module: wgpu::ShaderModule,
+    entry_point: &'static str,
+    pipelines: [OnceLock<wgpu::ComputePipeline>; 2],
+}
+
+impl Chromatic {
+    pub fn new(
+        device: &wgpu::Device,
+        layout: &wgpu::PipelineLayout,
+        module: &wgpu::ShaderModule,
+        entry_point: &'static str,
+    ) -> Self {
+        let (device, layout, module) = (device.clone(), layout.clone(), module.clone());
+        Self { device, layout, module, entry_point, pipelines: Default::default() }
+    }
+
+    pub fn get(&self, monochrome: bool) -> &wgpu::ComputePipeline {
+        let Self { device, layout, module, entry_point, pipelines } = self;
+        pipelines[usize::from(monochrome)].get_or_init(|| {
+            let constants = [(MONOCHROME, f64::from(u8::from(monochrome)))];
+            pipeline_with(device, layout, module, entry_point, &constants)
+        })
+    }
+}
+
+/// Says in WGSL that the three channels of a medium are alike.
+pub(crate) const MONOCHROME: &str = "MONOCHROME";
 
 /// Threads of a workgroup; `WORKGROUP` in `shared/dispatch.wgsl`.
 const WORKGROUP: u32 = 64;

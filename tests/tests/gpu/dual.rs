@@ -9,12 +9,12 @@ use translume::{
 use translume_mesh::{Atlas, builtin};
 use translume_reference::scatter;
 use translume_tests::{
-    Check, Fixture, Model, Pose, at_least, at_most, creature, dipoles, gpu, holds, notices, plane, sphere,
-    sphere_with,
+    Check, Fixture, Model, Pose, at_least, at_most, creature, dipoles, gpu, holds, notices, plane,
+    relative_rmse, sphere, sphere_with,
 };
 
 const MEDIA: [&str; 5] = ["skimmilk", "marble", "skin1", "ketchup", "spectralon"];
-const USUAL: Method = Method::Dual { theta: 0.75 };
+const USUAL: Method = Method::Within { tolerance: 0.01 };
 
 fn sun() -> [Light; 1] {
     [Light::Directional(DirectionalLight { to_light: [0.3, 0.7, 0.6], ..Default::default() })]
@@ -127,6 +127,50 @@ fn a_smaller_angle_is_more_accurate() {
     }
 }
 
+/// What is asked for is what comes out, at most. Measured: 0.3 to 0.7 of it.
+fn kept(tolerance: f32, asked: f32) -> Check {
+    for (model, medium) in [(creature(), Medium::SKIN1), (sphere_with(64), Medium::MARBLE)] {
+        let mut fixture = Fixture::new(&model, |d| (d.medium, d.mm_per_unit) = (medium, 0.1));
+        let found = compared(&mut fixture, Method::Within { tolerance: asked });
+        let overflows = f64::from(overflows(&fixture));
+        at_most(&format!("dual: overflows at {asked}"), overflows, 0.0)?;
+        at_most(&format!("dual: error, {asked} asked for"), found.rmse, tolerance.into())?;
+        at_most(&format!("dual: 99 %, {asked} asked for"), found.most, 4.0 * f64::from(tolerance))?;
+        at_most(&format!("dual: bias, {asked} asked for"), found.bias, 0.3 * f64::from(tolerance))?;
+    }
+    Ok(())
+}
+
+#[test]
+fn a_tolerance_is_kept() {
+    for tolerance in [0.1, 0.03, 0.01, 0.003, 0.001, 0.0003, 0.0001] {
+        holds(kept(tolerance, tolerance));
+        if tolerance < 0.03 {
+            notices(kept(tolerance, (30.0 * tolerance).min(0.1)));
+        }
+    }
+}
+
+/// Red, green and blue of a medium that is the same in all of them, against one in which they differ by next to nothing.
+fn grey(method: Method, other: f32) -> Check {
+    let shown = |blue: f32| {
+        let medium = Medium { sigma_s_prime: [1.0, 1.0, blue], sigma_a: [0.02; 3], ior: 1.3 };
+        let mut fixture = Fixture::new(&creature(), |d| (d.medium, d.mm_per_unit) = (medium, 0.1));
+        doubles(&in_the_sun(&mut fixture, method))
+    };
+    let (one, three) = (shown(1.0), shown(other));
+    // A rounding of the coefficient, and that of the sums.
+    at_most("scatter: one channel against three", relative_rmse(&one, &three), 1e-5)
+}
+
+#[test]
+fn a_grey_medium_runs_one_channel_for_three() {
+    for method in [USUAL, Method::Tree { theta: 0.4 }, Method::AllPairs] {
+        holds(grey(method, 1.000_000_1));
+        notices(grey(method, 1.001));
+    }
+}
+
 #[test]
 fn the_same_input_gives_the_same_bits() {
     let bits = |medium: Medium| {
@@ -228,7 +272,10 @@ fn what_cannot_be_is_refused() {
         Fixture::try_new(&sphere(), |d| (d.method, d.list_entries) = (Method::Dual { theta }, list_entries))
             .err()
     };
-    assert_eq!(with(0.75, 12), None);
+    let within = |tolerance| Fixture::try_new(&sphere(), |d| d.method = Method::Within { tolerance }).err();
+    assert_eq!((with(0.75, 12), within(0.05)), (None, None));
+    assert!(within(0.0).is_some_and(|error| error.to_string().contains("tolerance 0")));
+    assert!(within(f32::NAN).is_some());
     assert!(matches!(with(0.01, 12), Some(Error::Frame { .. })));
     assert!(matches!(with(0.75, 1025), Some(Error::Body { .. })));
 }

@@ -50,8 +50,8 @@ pub struct Composite {
     device: wgpu::Device,
     layout: wgpu::BindGroupLayout,
     target: CompositeTarget,
-    /// Of exitance at texels, at vertices and at fragments.
-    kinds: [Kind; 3],
+    /// Of exitance at texels, at vertices, at fragments, and at fragments of a medium that is the same in all channels.
+    kinds: [Kind; 4],
     depth: wgpu::PipelineLayout,
     /// Draws depth before exitance is summed up at fragments.
     depth_alone: OnceLock<wgpu::RenderPipeline>,
@@ -60,6 +60,7 @@ pub struct Composite {
 const TEXELS: usize = 0;
 const VERTICES: usize = 1;
 const FRAGMENTS: usize = 2;
+const GREY_FRAGMENTS: usize = 3;
 
 /// What draws one kind of exitance.
 struct Kind {
@@ -102,6 +103,7 @@ impl Composite {
             kind(translume_shaders::COMPOSITE, None),
             kind(translume_shaders::COMPOSITE_VERTICES, Some(&points.seen)),
             kind(translume_shaders::COMPOSITE_FRAGMENTS, Some(&points.field)),
+            kind(translume_shaders::COMPOSITE_FRAGMENTS, Some(&points.field)),
         ];
         let depth = kind(translume_shaders::COMPOSITE, None).layout;
         let composite =
@@ -115,7 +117,7 @@ impl Composite {
     fn pipeline(&self, kind: usize, flat: bool) -> &wgpu::RenderPipeline {
         let Kind { layout, shader, pipelines } = &self.kinds[kind];
         pipelines[usize::from(flat)].get_or_init(|| {
-            let pass = Pass::Picture { flat, after_depth: kind == FRAGMENTS };
+            let pass = Pass::Picture { flat, after_depth: kind >= FRAGMENTS, grey: kind == GREY_FRAGMENTS };
             pipeline(&self.device, layout, *shader, self.target, pass)
         })
     }
@@ -149,7 +151,7 @@ impl Composite {
         pass.set_bind_group(0, &view.group, &[]);
         pass.set_vertex_buffer(0, view.vertices.slice(..));
         pass.set_index_buffer(view.indices.slice(..), wgpu::IndexFormat::Uint32);
-        if view.kind == FRAGMENTS && self.target.depth.is_some() {
+        if view.kind >= FRAGMENTS && self.target.depth.is_some() {
             pass.set_pipeline(self.depth_pipeline());
             pass.draw_indexed(0..view.index_count, 0, 0..1);
         }
@@ -179,6 +181,7 @@ impl CompositeView {
         self.kind = match body.points() {
             None => TEXELS,
             Some(PointMemory::Vertices { .. }) => VERTICES,
+            Some(PointMemory::Fragments { .. }) if body.medium().is_monochrome() => GREY_FRAGMENTS,
             Some(PointMemory::Fragments { .. }) => FRAGMENTS,
         };
         let to_world = Mat4::from_scale(Vec3::splat(1.0 / body.mm_per_unit));
@@ -218,7 +221,7 @@ fn bind(
 
 #[derive(Clone, Copy)]
 enum Pass {
-    Picture { flat: bool, after_depth: bool },
+    Picture { flat: bool, after_depth: bool, grey: bool },
     DepthAlone,
 }
 
@@ -239,11 +242,18 @@ fn pipeline(
     pass: Pass,
 ) -> wgpu::RenderPipeline {
     let module = &gpu::module(device, shader);
-    let (entry_point, flat, after_depth, write_mask) = match pass {
-        Pass::Picture { flat, after_depth } => ("fragment", flat, after_depth, wgpu::ColorWrites::ALL),
-        Pass::DepthAlone => ("depth_alone", false, false, wgpu::ColorWrites::empty()),
+    let (entry_point, after_depth, write_mask) = match pass {
+        Pass::Picture { after_depth, .. } => ("fragment", after_depth, wgpu::ColorWrites::ALL),
+        Pass::DepthAlone => ("depth_alone", false, wgpu::ColorWrites::empty()),
     };
-    let constants = [("FLAT_NORMALS", f64::from(u8::from(flat)))];
+    let on = |on: bool| f64::from(u8::from(on));
+    let constants = match pass {
+        Pass::Picture { flat, grey: true, .. } => {
+            vec![("FLAT_NORMALS", on(flat)), (gpu::MONOCHROME, 1.0)]
+        }
+        Pass::Picture { flat, .. } => vec![("FLAT_NORMALS", on(flat))],
+        Pass::DepthAlone => Vec::new(),
+    };
     let vertex = wgpu::VertexBufferLayout {
         array_stride: size_of::<AtlasVertexLayout>() as u64,
         step_mode: wgpu::VertexStepMode::Vertex,

@@ -7,7 +7,7 @@ use super::points::{Field, PointMemory, Points};
 use crate::Error;
 use crate::buffers::Buffers;
 use crate::evaluate::Evaluate;
-use crate::gpu::{self, FLOAT_TEXTURE, Pass, READ, UNIFORM_ARRAY, UNIFORM_STRIDE, WRITE};
+use crate::gpu::{self, Chromatic, FLOAT_TEXTURE, Pass, READ, UNIFORM_ARRAY, UNIFORM_STRIDE, WRITE};
 use crate::layout::{DualLayout, ScatterLayout};
 use crate::stages::cluster::Tree;
 
@@ -28,8 +28,8 @@ pub(crate) const EXPANSION: u64 = 160;
 pub(crate) struct Dual {
     layout: wgpu::BindGroupLayout,
     start: wgpu::ComputePipeline,
-    inner: wgpu::ComputePipeline,
-    leaf: wgpu::ComputePipeline,
+    inner: Chromatic,
+    leaf: Chromatic,
     pub points: Points,
 }
 
@@ -42,6 +42,7 @@ pub(crate) struct DualMemory {
     capacity: u32,
     first_expansion: u32,
     evaluate: Evaluate,
+    pub monochrome: bool,
     /// Where exitance is evaluated at points.
     pub points: Option<PointMemory>,
 }
@@ -104,10 +105,11 @@ impl Dual {
         let types = [UNIFORM_ARRAY, READ, READ, WRITE, WRITE, WRITE, WRITE, FLOAT_TEXTURE];
         let layout = gpu::layout(device, "dual", wgpu::ShaderStages::COMPUTE, &types);
         let module = gpu::module(device, translume_shaders::DUAL);
+        let pipelines = gpu::pipeline_layout(device, "dual", &[&layout]);
         Self {
             start: gpu::compute_pipeline(device, &layout, &module, "start"),
-            inner: gpu::compute_pipeline(device, &layout, &module, "inner"),
-            leaf: gpu::compute_pipeline(device, &layout, &module, "leaf"),
+            inner: Chromatic::new(device, &pipelines, &module, "inner"),
+            leaf: Chromatic::new(device, &pipelines, &module, "leaf"),
             points: Points::new(device),
             layout,
         }
@@ -148,7 +150,17 @@ impl Dual {
         };
         let points = self.points.memory(device, buffers, &field, demand.evaluate);
         let (evaluate, first_expansion) = (demand.evaluate, first_expansion(tree, demand.evaluate));
-        DualMemory { uniforms, lists, group, start_level, capacity, first_expansion, evaluate, points }
+        DualMemory {
+            uniforms,
+            lists,
+            group,
+            start_level,
+            capacity,
+            first_expansion,
+            evaluate,
+            monochrome: false,
+            points,
+        }
     }
 
     pub fn encode(&self, pass: &mut Pass<'_>, memory: &DualMemory, tree: &Tree, vertices: u32) {
@@ -157,12 +169,13 @@ impl Dual {
         pass.dispatch_workgroups(1, 1);
         let last = u32::from(memory.points.is_some());
         for level in (last..=memory.start_level).rev() {
-            pass.set_pipeline(if level > 0 { &self.inner } else { &self.leaf });
+            let pipeline = if level > 0 { &self.inner } else { &self.leaf };
+            pass.set_pipeline(pipeline.get(memory.monochrome));
             pass.set_bind_group(&memory.group, &[level * UNIFORM_STRIDE as u32]);
             pass.dispatch(tree.counts[level as usize]);
         }
         if let Some(points) = &memory.points {
-            self.points.encode(pass, points, vertices);
+            self.points.encode(pass, points, vertices, memory.monochrome);
         }
     }
 }
