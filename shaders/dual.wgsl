@@ -114,11 +114,8 @@ fn inner(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: v
         }
         for (var k = 0u; k < count; k++) {
             let index = notes[note(k, local)];
-            let lamp = lamps[index];
-            let d = receiver - bounds[index].xyz;
             // Derivatives by r² lose their digits where r hardly counts.
-            let r2 = max(dot(d, d), max(0.01 * size * size, dual.table.least_r2));
-            add(&e, lamp.power, profile_jet(dual.table, kernel_table, r2, lamp.spread * lamp.spread, facing_square(d, lamp.normal)), d);
+            collect(&e, lamps[index], receiver - bounds[index].xyz, max(0.01 * size * size, dual.table.least_r2));
         }
         evaluated += count;
     }
@@ -136,7 +133,8 @@ fn inner(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: v
         return;
     }
     for (var k = 0u; k < texels; k++) {
-        exitance[node * 4u + k] = vec4f(moved(e, bounds[node * 4u + k].xyz - receiver).value, e.evaluations);
+        let texel = node * 4u + k;
+        exitance[texel] = vec4f(leaving(moved(e, bounds[texel].xyz - receiver), lamps[texel].normal), e.evaluations);
     }
 }
 
@@ -164,7 +162,7 @@ fn leaf(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: ve
                 head = packed_node(word);
                 continue;
             }
-            sum += sent(word, index, receiver);
+            sum += sent(word, index, receiver, lamps[index].normal);
         }
     }
     var w = walk(packed_node(head));
@@ -186,7 +184,7 @@ fn leaf(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: ve
             }
             pass_by(&w);
         }
-        for (var k = 0u; k < count; k++) { sum += sent(notes[note(k, local)], index, receiver); }
+        for (var k = 0u; k < count; k++) { sum += sent(notes[note(k, local)], index, receiver, lamps[index].normal); }
     }
     // Where hardly any light comes, an expansion may dip below none.
     exitance[index] = max(sum, vec4f(0.0));

@@ -66,19 +66,3 @@ fn profile_jet(table: KernelTable, texels: texture_2d<f32>, r2: f32, s2: f32, fa
     let value = exp(logarithm);
     return Jet(value, value * first / r2, value * (first * first + second - first) / r2 / r2);
 }
-
-// Adds what one source sends to the receivers about a point `d` from it.
-fn add(e: ptr<function, Expansion>, power: vec3f, jet: Jet, d: vec3f) {
-    let first = 2.0 * power * jet.first;
-    let second = 4.0 * power * jet.second;
-    (*e).value += power * jet.value;
-    (*e).x += first * d.x;
-    (*e).y += first * d.y;
-    (*e).z += first * d.z;
-    (*e).xx += second * (d.x * d.x) + first;
-    (*e).yy += second * (d.y * d.y) + first;
-    (*e).zz += second * (d.z * d.z) + first;
-    (*e).xy += second * (d.x * d.y);
-    (*e).xz += second * (d.x * d.z);
-    (*e).yz += second * (d.y * d.z);
-}

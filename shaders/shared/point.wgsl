@@ -29,7 +29,7 @@ fn exitance_at(receiver: vec3f, texel: u32) -> vec4f {
     // A group that nobody was expected to need left nothing.
     if dual.start_level > 0u && seen.w != NOT_NEEDED {
         let e = moved(expansions[group], receiver - seen.xyz);
-        sum = vec4f(e.value, e.evaluations);
+        sum = vec4f(leaving(e, lamps[texel].normal), e.evaluations);
         head = heads[group];
     }
     let undecided = (head & UNDECIDED) != 0u;
@@ -46,7 +46,7 @@ fn exitance_at(receiver: vec3f, texel: u32) -> vec4f {
                 open(&w);
                 continue;
             }
-            if source.w > 0.0 { sum += sent(at, NO_TEXEL, receiver); }
+            if source.w > 0.0 { sum += sent(at, NO_TEXEL, receiver, lamps[texel].normal); }
             pass_by(&w);
             continue;
         }
@@ -54,7 +54,7 @@ fn exitance_at(receiver: vec3f, texel: u32) -> vec4f {
         let link = packed_level(word) == LINK;
         head = select(head - 1u, packed_node(word), link);
         w.ended = head == 0u;
-        if !link { sum += sent(word, NO_TEXEL, receiver); }
+        if !link { sum += sent(word, NO_TEXEL, receiver, lamps[texel].normal); }
     }
     return max(sum, vec4f(0.0));
 }

@@ -1,5 +1,15 @@
 // What both the stage and whoever takes over its lists know of a body. The module declares `dual`, `bounds`, `lamps`, `expansions`, `heads`,
 // `lists` and `kernel_table`.
+
+struct Term {
+    // How far below the surface, along its own normal, a source lies, RGB, mm.
+    depth: vec3f,
+    padding0: u32,
+    // What it counts, RGB.
+    weight: vec3f,
+    padding1: u32,
+}
+
 struct Dual {
     table: KernelTable,
     texel_count: u32,
@@ -22,6 +32,8 @@ struct Dual {
     first_expansion: u32,
     padding0: u32,
     padding1: u32,
+    // Of kernels whose sources lie off the surface.
+    terms: array<Term, 2>,
     // Where each level above the texels begins among the receivers.
     offsets: array<vec4u, 4>,
     // Where each level begins among the sources in `bounds`.
@@ -79,13 +91,6 @@ fn source_index(level: u32, node: u32) -> u32 {
 
 fn receiver_index(level: u32, node: u32) -> u32 {
     return dual.offsets[level / 4u][level % 4u] + node;
-}
-
-// What a source sends to a point on a texel, and the one evaluation it took.
-fn sent(source: u32, texel: u32, receiver: vec3f) -> vec4f {
-    let lamp = lamps[source];
-    let spread = lamp.spread * select(1.0, 1.0 / NEIGHBOUR_NARROWING, source == texel);
-    return vec4f(received(dual.table, receiver, Source(bounds[source].xyz, spread, lamp.normal, lamp.power)), 1.0);
 }
 
 // Whether a single texel has to open a source of this size.

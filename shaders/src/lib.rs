@@ -88,6 +88,20 @@ pub const DUAL: Shader = shader!(
     "shared/expansion.wgsl",
     "shared/lists.wgsl",
     "shared/walk.wgsl",
+    "kernel/chord.wgsl",
+    "dual.wgsl"
+);
+/// The same with sources off the surface, whose flux leaves.
+pub const DUAL_ORIENTED: Shader = shader!(
+    "dual, oriented",
+    "shared/dispatch.wgsl",
+    "shared/cluster.wgsl",
+    "shared/kernel_table.wgsl",
+    "shared/source.wgsl",
+    "shared/expansion.wgsl",
+    "shared/lists.wgsl",
+    "shared/walk.wgsl",
+    "kernel/oriented.wgsl",
     "dual.wgsl"
 );
 /// What that leaves for points → radiant exitance of every vertex.
@@ -100,6 +114,7 @@ pub const VERTICES: Shader = shader!(
     "shared/expansion.wgsl",
     "shared/lists.wgsl",
     "shared/walk.wgsl",
+    "kernel/chord.wgsl",
     "shared/point.wgsl",
     "vertices.wgsl"
 );
@@ -118,12 +133,13 @@ pub const COMPOSITE_FRAGMENTS: Shader = composite!(
     "shared/expansion.wgsl",
     "shared/lists.wgsl",
     "shared/walk.wgsl",
+    "kernel/chord.wgsl",
     "shared/point.wgsl",
     "composite/fragments.wgsl"
 );
 
 /// Every module, in the order light flows through them.
-pub const ALL: [Shader; 13] = [
+pub const ALL: [Shader; 14] = [
     DEFORM,
     NORMALS,
     VISIBILITY,
@@ -132,6 +148,7 @@ pub const ALL: [Shader; 13] = [
     CLUSTER,
     SCATTER,
     DUAL,
+    DUAL_ORIENTED,
     VERTICES,
     RESOLVE,
     COMPOSITE,

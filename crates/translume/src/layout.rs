@@ -157,6 +157,16 @@ pub(crate) struct LightPointLayout {
     pub weights: u32,
 }
 
+/// A source off the surface.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub(crate) struct TermLayout {
+    pub depth: [f32; 3],
+    pub padding_0: u32,
+    pub weight: [f32; 3],
+    pub padding_1: u32,
+}
+
 /// Which texels are needed as receivers.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
@@ -214,6 +224,7 @@ pub(crate) struct DualLayout {
     pub first_receiver: u32,
     pub first_expansion: u32,
     pub padding: [u32; 2],
+    pub terms: [TermLayout; 2],
     pub offsets: [[u32; 4]; 4],
     pub sources: [[u32; 4]; 4],
 }
@@ -392,6 +403,7 @@ mod tests {
             u64::from(naga_layout(translume_shaders::DUAL.source, "Expansion").1),
             crate::stages::scatter::dual::EXPANSION
         );
+        check!(DUAL, "Term", TermLayout, [depth, weight]);
         check!(DUAL, "Lamp", LampLayout, [power, spread, normal]);
         check!(CLUSTER, "Receiver", ReceiverLayout, [centre, spread, radius, texels]);
         check!(
@@ -410,6 +422,7 @@ mod tests {
                 capacity,
                 first_receiver,
                 first_expansion,
+                terms,
                 offsets,
                 sources
             ]

@@ -8,7 +8,7 @@ use crate::Error;
 use crate::buffers::Buffers;
 use crate::evaluate::Evaluate;
 use crate::gpu::{self, Chromatic, FLOAT_TEXTURE, Pass, READ, UNIFORM_ARRAY, UNIFORM_STRIDE, WRITE};
-use crate::layout::{DualLayout, ScatterLayout};
+use crate::layout::{DualLayout, ScatterLayout, TermLayout};
 use crate::stages::cluster::Tree;
 
 /// The coarsest level of receivers has at least this many nodes: fewer would not share enough to be worth a dispatch.
@@ -212,6 +212,7 @@ impl DualMemory {
                 first_receiver: tree.sources(),
                 first_expansion: self.first_expansion,
                 padding: [0; 2],
+                terms: [TermLayout::default(); 2],
                 offsets: scatter.offsets,
                 sources,
             };
