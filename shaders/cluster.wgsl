@@ -10,8 +10,9 @@ struct Level {
     // Where the sources of this level, and its receivers, begin in `bounds`.
     source_offset: u32,
     receiver_offset: u32,
-    padding0: u32,
-    padding1: u32,
+    // Where the sources of the level below begin in `bounds`.
+    child_sources: u32,
+    padding: u32,
 }
 
 // Which texels are needed as receivers.
@@ -47,11 +48,10 @@ const SLACK: f32 = 0.02;
 // What the sources of `bounds` send, in their order.
 @group(0) @binding(7) var<storage, read_write> lamps: array<Lamp>;
 @group(0) @binding(8) var<uniform> need: Need;
-// One bit a texel: whether a vertex stands on it.
-@group(0) @binding(9) var<storage, read> under_vertices: array<u32>;
+@group(0) @binding(9) var<storage, read> marks: array<u32>;
 
 fn is_needed(index: u32, place: vec3f, spread: f32) -> bool {
-    if (need.kind & UNDER_VERTICES) != 0u && (under_vertices[index / 32u] >> (index % 32u) & 1u) == 0u { return false; }
+    if (need.kind & UNDER_VERTICES) != 0u && (marks[index] & VERTEX_MARK) == 0u { return false; }
     if (need.kind & IN_VIEW) == 0u { return true; }
     // How far clip coordinates change over the border, at most.
     let m = transpose(need.view_projection);
@@ -83,7 +83,7 @@ fn is_facing(first: u32, count: u32) -> bool {
 
 fn texel_cluster(index: u32) -> Cluster {
     let place = texel_positions[index];
-    return Cluster(place.xyz, disc_spread(place.w), texel_irradiance[index].rgb * place.w, 0.0, texel_normals[index].xyz, place.w);
+    return Cluster(place.xyz, disc_spread(place.w), texel_irradiance[index].rgb * marked_tint(marks[index]) * place.w, 0.0, texel_normals[index].xyz, place.w);
 }
 
 @compute @workgroup_size(64)
@@ -99,14 +99,14 @@ fn from_texels(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) gro
             let extent = select(0.0, children[k].spread, (need.kind & POINTS) != 0u);
             receiving[k] = Receiver(children[k].centroid, extent, CORNER * extent, select(0u, 1u, needed), 0u, 0u);
             bounds[node * 4u + k] = vec4f(children[k].centroid, select(0.0, NO_SIZE, any(children[k].power > vec3f(0.0))));
-            lamps[node * 4u + k] = Lamp(children[k].power, NEIGHBOUR_NARROWING * children[k].spread, children[k].normal, 0u);
+            lamps[node * 4u + k] = Lamp(children[k].power, NEIGHBOUR_NARROWING * children[k].spread, children[k].normal, marks[node * 4u + k]);
         }
     }
     let count = min(level.child_count - node * 4u, 4u);
     if !is_facing(node * 4u, count) {
         for (var k = 0u; k < 4u; k++) { receiving[k].texels = 0u; }
     }
-    store(node, merge(&children, count), merge_receivers(&receiving));
+    store(node, &children, count, merge_receivers(&receiving));
 }
 
 @compute @workgroup_size(64)
@@ -121,17 +121,30 @@ fn from_clusters(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) g
             receiving[k] = receivers[level.child_offset + node * 4u + k];
         }
     }
-    store(node, merge(&children, min(level.child_count - node * 4u, 4u)), merge_receivers(&receiving));
+    store(node, &children, min(level.child_count - node * 4u, 4u), merge_receivers(&receiving));
 }
 
-fn store(node: u32, cluster: Cluster, receiver: Receiver) {
+fn store(node: u32, children: ptr<function, array<Cluster, 4>>, count: u32, receiver: Receiver) {
+    let cluster = merge(children, count);
     clusters[level.node_offset + node] = cluster;
     receivers[level.node_offset + node] = receiver;
     let size = select(0.0, max(size_of(cluster.spread, cluster.radius), NO_SIZE), any(cluster.power > vec3f(0.0)));
     bounds[level.source_offset + node] = vec4f(cluster.centroid, size);
-    lamps[level.source_offset + node] = Lamp(cluster.power, cluster.spread, cluster.normal, 0u);
+    lamps[level.source_offset + node] = Lamp(cluster.power, cluster.spread, cluster.normal, mean_scale(node, children, count));
     let extent = select(NOT_NEEDED, size_of(receiver.spread, receiver.radius), receiver.texels > 0u);
     bounds[level.receiver_offset + node] = vec4f(receiver.centre, extent);
+}
+
+// How far light wanders from a cluster: the mean over its power.
+fn mean_scale(node: u32, children: ptr<function, array<Cluster, 4>>, count: u32) -> u32 {
+    var sum = 0.0;
+    var total = 0.0;
+    for (var k = 0u; k < count; k++) {
+        let power = dot((*children)[k].power, vec3f(1.0));
+        sum += power * marked_scale(lamps[level.child_sources + node * 4u + k].marks);
+        total += power;
+    }
+    return scale_mark(select(1.0, sum / total, total > 0.0));
 }
 
 // Children weigh by their power; where none has any, by area; where none has that either, equally.

@@ -187,5 +187,5 @@ fn leaf(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: ve
         for (var k = 0u; k < count; k++) { sum += sent(notes[note(k, local)], index, receiver, lamps[index].normal); }
     }
     // Where hardly any light comes, an expansion may dip below none.
-    exitance[index] = max(sum, vec4f(0.0));
+    exitance[index] = max(sum, vec4f(0.0)) * vec4f(marked_tint(lamps[index].marks), 1.0);
 }

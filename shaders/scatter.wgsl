@@ -14,23 +14,20 @@ struct Scatter {
     z_r_squared: f32,
     padding0: u32,
     padding1: u32,
-    // Where each level begins in `clusters`; level 0 is the texels.
-    offsets: array<vec4u, 4>,
+    // Where each level begins in `bounds`; level 0 is the texels.
+    sources: array<vec4u, 4>,
 }
 
 @group(0) @binding(0) var<uniform> scatter: Scatter;
-@group(0) @binding(1) var<storage, read> texel_positions: array<vec4f>;
-@group(0) @binding(2) var<storage, read> texel_normals: array<vec4f>;
-@group(0) @binding(3) var<storage, read> texel_irradiance: array<vec4f>;
-@group(0) @binding(4) var<storage, read> clusters: array<Cluster>;
-@group(0) @binding(5) var<storage, read_write> exitance: array<vec4f>;
-@group(0) @binding(6) var kernel_table: texture_2d<f32>;
+// Centres and sizes of all sources, dark ones with size 0, and what they send.
+@group(0) @binding(1) var<storage, read> bounds: array<vec4f>;
+@group(0) @binding(2) var<storage, read> lamps: array<Lamp>;
+@group(0) @binding(3) var<storage, read_write> exitance: array<vec4f>;
+@group(0) @binding(4) var kernel_table: texture_2d<f32>;
 
-// The texel as the receiver of the same index (its own disc) or any other sees it.
-fn texel_source(index: u32, receiver: u32) -> Source {
-    let place = texel_positions[index];
-    let spread = disc_spread(place.w) * select(NEIGHBOUR_NARROWING, 1.0, index == receiver);
-    return Source(place.xyz, spread, texel_normals[index].xyz, texel_irradiance[index].rgb * place.w);
+// What a source sends to a texel.
+fn sent(source: u32, texel: u32, receiver: vec3f) -> vec3f {
+    return received(scatter.table, receiver - bounds[source].xyz, lamps[source], source == texel);
 }
 
 // Every receiver collects from a range of sources: the exact sum that everything faster is compared with.
@@ -38,11 +35,10 @@ fn texel_source(index: u32, receiver: u32) -> Source {
 fn all_pairs(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_index) local: u32) {
     let index = item_index(group, groups, local);
     if index >= scatter.texel_count { return; }
-    let receiver = texel_positions[index].xyz;
+    let receiver = bounds[index].xyz;
     var sum = vec3f(0.0);
-    for (var k = 0u; k < scatter.source_count; k++) {
-        sum += received(scatter.table, receiver, texel_source(scatter.first_source + k, index));
-    }
+    for (var k = 0u; k < scatter.source_count; k++) { sum += sent(scatter.first_source + k, index, receiver); }
+    sum *= marked_tint(lamps[index].marks);
     if scatter.first_source > 0u { sum += exitance[index].rgb; }
     exitance[index] = vec4f(sum, 0.0);
 }
@@ -52,34 +48,27 @@ fn all_pairs(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) group
 fn tree(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_index) local: u32) {
     let index = item_index(group, groups, local);
     if index >= scatter.texel_count { return; }
-    let receiver = texel_positions[index].xyz;
+    let receiver = bounds[index].xyz;
     var sum = vec3f(0.0);
     var level = scatter.top_level;
     var node = 0u;
     // The inner loop walks to the next node that is accepted, a cluster or, at level 0, a texel; the kernel is then evaluated
     // outside of it, where all invocations of a wave meet again.
     loop {
-        var source: Source;
+        var source = 0u;
         var found = false;
         while !found && node < level_count(scatter.texel_count, level) {
-            if level == 0u {
-                source = texel_source(node, index);
-                found = true;
-            } else {
-                let cluster = clusters[scatter.offsets[level / 4u][level % 4u] + node];
-                let offset = receiver - cluster.centroid;
-                let size = size_of(cluster.spread, cluster.radius);
-                found = size * size < scatter.theta_squared * (dot(offset, offset) + scatter.z_r_squared);
-                source = Source(cluster.centroid, cluster.spread, cluster.normal, cluster.power);
-                // A dark cluster needs no opening.
-                found = found || all(cluster.power == vec3f(0.0));
-                if !found {
-                    level -= 1u;
-                    node *= 4u;
-                    continue;
-                }
+            source = scatter.sources[level / 4u][level % 4u] + node;
+            let seen = bounds[source];
+            let offset = receiver - seen.xyz;
+            // A dark source needs no opening.
+            let small = seen.w * seen.w < scatter.theta_squared * (dot(offset, offset) + scatter.z_r_squared);
+            if level > 0u && !small && seen.w > 0.0 {
+                level -= 1u;
+                node *= 4u;
+                continue;
             }
-            found = any(source.power > vec3f(0.0));
+            found = seen.w > 0.0;
             node += 1u;
             while level < scatter.top_level && (node % 4u == 0u || node >= level_count(scatter.texel_count, level)) {
                 node = (node + 3u) / 4u;
@@ -87,7 +76,7 @@ fn tree(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: ve
             }
         }
         if !found { break; }
-        sum += received(scatter.table, receiver, source);
+        sum += sent(source, index, receiver);
     }
-    exitance[index] = vec4f(sum, 0.0);
+    exitance[index] = vec4f(sum * marked_tint(lamps[index].marks), 0.0);
 }

@@ -7,5 +7,6 @@
 fn vertices(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_index) local: u32) {
     let index = item_index(group, groups, local);
     if index >= arrayLength(&vertex_exitance) { return; }
-    vertex_exitance[index] = exitance_at(positions[index].xyz, standing[index]);
+    let texel = standing[index];
+    vertex_exitance[index] = exitance_at(positions[index].xyz, texel) * vec4f(marked_tint(lamps[texel].marks), 1.0);
 }

@@ -2,17 +2,18 @@
 
 // What a source sends to a point, and the one evaluation it took. own: the texel in whose middle the point is
 fn sent(source: u32, own: u32, receiver: vec3f, normal: vec3f) -> vec4f {
-    let lamp = lamps[source];
-    let spread = lamp.spread * select(1.0, 1.0 / NEIGHBOUR_NARROWING, source == own);
-    return vec4f(received(dual.table, receiver, Source(bounds[source].xyz, spread, lamp.normal, lamp.power)), 1.0);
+    return vec4f(received(dual.table, receiver - bounds[source].xyz, lamps[source], source == own), 1.0);
 }
 
 // Adds what one source sends to the receivers about a point `d` from it.
 fn collect(e: ptr<function, Expansion>, lamp: Lamp, d: vec3f, least_r2: f32) {
-    let jet = profile_jet(dual.table, kernel_table, max(dot(d, d), least_r2), lamp.spread * lamp.spread, facing_square(d, lamp.normal));
-    let first = 2.0 * lamp.power * jet.first;
-    let second = 4.0 * lamp.power * jet.second;
-    (*e).value += lamp.power * jet.value;
+    let c2 = scale_square(lamp);
+    let r2 = max(c2 * dot(d, d), least_r2);
+    let jet = profile_jet(dual.table, kernel_table, r2, c2 * lamp.spread * lamp.spread, facing_square(d, lamp.normal));
+    let power = c2 * lamp.power;
+    let first = 2.0 * c2 * power * jet.first;
+    let second = 4.0 * c2 * c2 * power * jet.second;
+    (*e).value += power * jet.value;
     (*e).x += first * d.x;
     (*e).y += first * d.y;
     (*e).z += first * d.z;

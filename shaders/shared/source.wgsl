@@ -1,16 +1,21 @@
 // What a receiver sees: texels, or clusters of them. The module declares `kernel_table`.
 
-struct Source {
-    place: vec3f,
-    spread: f32,
-    normal: vec3f,
-    power: vec3f,
+// Whether light wanders differently far from source to source.
+override SCALED: bool = false;
+
+// own: whether the receiver is in the middle of the source
+fn received(table: KernelTable, offset: vec3f, lamp: Lamp, own: bool) -> vec3f {
+    let spread = lamp.spread * select(1.0, 1.0 / NEIGHBOUR_NARROWING, own);
+    let c2 = scale_square(lamp);
+    let profile = area_averaged_profile(table, kernel_table, c2 * dot(offset, offset), c2 * spread * spread, facing_square(offset, lamp.normal));
+    return lamp.power * (c2 * profile);
 }
 
-fn received(table: KernelTable, receiver: vec3f, source: Source) -> vec3f {
-    let offset = receiver - source.place;
-    let facing = facing_square(offset, source.normal);
-    return source.power * area_averaged_profile(table, kernel_table, dot(offset, offset), source.spread * source.spread, facing);
+// With scattering c times as strong, R_d(r) becomes c²·R_d(c·r).
+fn scale_square(lamp: Lamp) -> f32 {
+    if !SCALED { return 1.0; }
+    let scale = marked_scale(lamp.marks);
+    return scale * scale;
 }
 
 // Squared cosine between a source's normal and the line to a receiver.

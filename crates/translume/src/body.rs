@@ -8,6 +8,7 @@ use crate::buffers::{Buffers, Extent, Outputs};
 use crate::descriptor::BodyDescriptor;
 use crate::evaluate::{Evaluate, Shape};
 use crate::frame::{self, Casters, Frame, Lighting};
+use crate::gpu::MediumKind;
 use crate::kernel_table::KernelTableLayout;
 use crate::kernel_texture::KernelTexture;
 use crate::layout::{MAX_VIEWS, NeedLayout};
@@ -23,6 +24,8 @@ use crate::stages::scatter::{Method, Scatter};
 use crate::stages::shadow::DepthMaps;
 use crate::stages::visibility::SkyMemory;
 use crate::stages::{Stage, StageSet, Stages};
+use crate::standing::Standing;
+use crate::variation::{VERTEX_MARK, Variation};
 use crate::{Error, Light, Medium, Profile, ShadowOptions};
 use glam::{Mat4, Vec3};
 use std::sync::Arc;
@@ -55,6 +58,11 @@ pub struct Body {
     /// Where the last frame evaluated.
     evaluated: Evaluate,
     need: NeedLayout,
+    pub(crate) kind: MediumKind,
+    /// Which texels have a vertex, among marks of a medium without variation.
+    marks: Vec<u32>,
+    /// Of [`Variation::scale`].
+    greatest_scale: f32,
     model: Mat4,
     /// [`Profile::exit_scale`] of profile and medium: an integral too long for every picture.
     pub(crate) exit_scale: f32,
@@ -103,7 +111,8 @@ impl Body {
 
         let tree = Tree::new(extent.texels);
         check_method(&tree, method, descriptor.evaluate, &device.limits())?;
-        let buffers = Buffers::new(device, mesh, atlas, &tree);
+        let standing = Standing::new(mesh, atlas);
+        let buffers = Buffers::new(device, mesh, atlas, &tree, &standing);
         let exitance = stages.resolve.texture(device, atlas.size);
         let exitance_view = exitance.create_view(&wgpu::TextureViewDescriptor::default());
         let kernel = KernelTexture::new(device, mesh, atlas);
@@ -135,6 +144,9 @@ impl Body {
             evaluate: descriptor.evaluate,
             evaluated: Evaluate::PerTexel,
             need: NeedLayout::default(),
+            kind: MediumKind::default(),
+            marks: standing.marks,
+            greatest_scale: 1.0,
             model: Mat4::IDENTITY,
             exit_scale: profile.exit_scale(medium.ior),
             pose: Pose::rest(&extent),
@@ -286,6 +298,36 @@ impl Body {
         Ok(())
     }
 
+    /// Makes the medium differ from texel to texel of the atlas, or with `None` no more; the next frame clusters and scatters anew.
+    ///
+    /// # Errors
+    /// [`Error::Frame`] names the texel whose variation is out of range, or how many there are of how many.
+    pub fn set_variation(
+        &mut self,
+        queue: &wgpu::Queue,
+        variation: Option<&[Variation]>,
+    ) -> Result<(), Error> {
+        let texels = self.marks.len();
+        let variation = variation.unwrap_or_default();
+        if !variation.is_empty() && variation.len() != texels {
+            return Err(Error::Frame {
+                problem: format!("the medium varies over {} of {texels} texels", variation.len()),
+                remedy: "give one variation for each texel of the atlas",
+            });
+        }
+        variation.iter().enumerate().try_for_each(|(texel, v)| v.validate(texel))?;
+        let mut marks = self.marks.clone();
+        for (mark, v) in marks.iter_mut().zip(variation) {
+            *mark = *mark & VERTEX_MARK | v.mark();
+        }
+        queue.write_buffer(&self.buffers.marks, 0, bytemuck::cast_slice(&marks));
+        self.kind.scaled = variation.iter().any(|v| v.scale != 1.0);
+        self.greatest_scale = variation.iter().map(|v| v.scale).fold(1.0, f32::max);
+        self.method_stale = true;
+        self.pending.insert(StageSet::from_stage_on(Stage::Cluster));
+        Ok(())
+    }
+
     /// Changes the profile. Today's profiles differ in how light leaves towards the eye, so no stage has to run again.
     pub fn set_profile(&mut self, profile: Profile) {
         self.profile = profile;
@@ -407,7 +449,8 @@ impl Body {
         if outgrown {
             self.table = self.kernel.write(queue, &channels, diagonal);
         }
-        let layout = Scatter::layout(self.table, &channels, &self.tree, self.method);
+        self.kind.monochrome = self.medium.is_monochrome();
+        let layout = Scatter::layout(self.table, &channels, self.greatest_scale, &self.tree, self.method);
         if let Some(theta) = self.dual_theta() {
             let (stage, tree) = (&self.stages.scatter.dual, &self.tree);
             let demand = Demand { list_entries: self.list_entries, theta, evaluate: self.evaluated };
@@ -415,7 +458,7 @@ impl Body {
             let memory = self
                 .dual
                 .get_or_insert_with(|| stage.memory(device, &self.buffers, &self.kernel.view, tree, demand));
-            memory.monochrome = self.medium.is_monochrome();
+            memory.kind = self.kind;
             memory.write(queue, &layout, tree, theta);
         }
         let uniforms = Scatter::uniforms(layout);
@@ -425,10 +468,10 @@ impl Body {
         self.method_stale = false;
     }
 
-    /// Opening angle of the dual scatter, where that is the method and the body has a tree.
+    /// Opening angle of the dual scatter, where that is the method.
     fn dual_theta(&self) -> Option<f32> {
         match self.method.resolved() {
-            Method::Dual { theta } if self.tree.top_level() > 0 => Some(theta),
+            Method::Dual { theta } => Some(theta),
             _ => None,
         }
     }

@@ -37,7 +37,7 @@ pub(crate) struct Buffers {
     pub cluster_uniforms: wgpu::Buffer,
     pub need: wgpu::Buffer,
     pub vertex_texels: wgpu::Buffer,
-    pub under_vertices: wgpu::Buffer,
+    pub marks: wgpu::Buffer,
     pub clusters: wgpu::Buffer,
     pub receivers: wgpu::Buffer,
     pub bounds: wgpu::Buffer,
@@ -125,7 +125,7 @@ const SMALLER_ATLAS: &str = "use a smaller atlas, or create the device with high
 const SMALLER_MESH: &str = "use a smaller mesh, or create the device with higher limits";
 
 impl Buffers {
-    pub fn new(device: &wgpu::Device, mesh: &Mesh, atlas: &Atlas, tree: &Tree) -> Self {
+    pub fn new(device: &wgpu::Device, mesh: &Mesh, atlas: &Atlas, tree: &Tree, standing: &Standing) -> Self {
         let storage =
             |label, content: &[u32]| gpu::buffer_with(device, label, BufferUsages::STORAGE, content);
         let floats = |label, content: &[f32]| gpu::buffer_with(device, label, BufferUsages::STORAGE, content);
@@ -152,7 +152,6 @@ impl Buffers {
         let atlas_vertices: Vec<_> =
             atlas.vertices.iter().map(|v| AtlasVertexLayout { xref: v.xref, uv: v.uv }).collect();
         let atlas_indices: Vec<u32> = atlas.triangles.iter().flatten().copied().collect();
-        let standing = Standing::new(mesh, atlas);
         let dispatches = extent.texels.div_ceil(SOURCES_PER_DISPATCH).max(1);
 
         let positions = device.create_buffer(&wgpu::BufferDescriptor {
@@ -191,7 +190,12 @@ impl Buffers {
             ),
             need: gpu::uniform_buffer(device, "need", size_of::<NeedLayout>() as u64),
             vertex_texels: storage("vertex texels", &standing.texels),
-            under_vertices: storage("under vertices", &standing.bits),
+            marks: gpu::buffer_with(
+                device,
+                "marks",
+                BufferUsages::STORAGE | BufferUsages::COPY_DST,
+                &standing.marks,
+            ),
             clusters: gpu::buffer(
                 device,
                 "clusters",

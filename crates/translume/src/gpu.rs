@@ -132,16 +132,16 @@ pub(crate) fn pipeline_with(
     })
 }
 
-/// A compute pipeline with and without `MONOCHROME`, each made when it is first needed.
-pub(crate) struct Chromatic {
+/// A compute pipeline for each kind of medium, made when it is first needed.
+pub(crate) struct PerMedium {
     device: wgpu::Device,
     layout: wgpu::PipelineLayout,
     module: wgpu::ShaderModule,
     entry_point: &'static str,
-    pipelines: [OnceLock<wgpu::ComputePipeline>; 2],
+    pipelines: [OnceLock<wgpu::ComputePipeline>; 4],
 }
 
-impl Chromatic {
+impl PerMedium {
     pub fn new(
         device: &wgpu::Device,
         layout: &wgpu::PipelineLayout,
@@ -152,17 +152,41 @@ impl Chromatic {
         Self { device, layout, module, entry_point, pipelines: Default::default() }
     }
 
-    pub fn get(&self, monochrome: bool) -> &wgpu::ComputePipeline {
+    pub fn get(&self, kind: MediumKind) -> &wgpu::ComputePipeline {
         let Self { device, layout, module, entry_point, pipelines } = self;
-        pipelines[usize::from(monochrome)].get_or_init(|| {
-            let constants = [(MONOCHROME, f64::from(u8::from(monochrome)))];
-            pipeline_with(device, layout, module, entry_point, &constants)
-        })
+        pipelines[kind.index()]
+            .get_or_init(|| pipeline_with(device, layout, module, entry_point, &kind.constants()))
     }
 }
 
-/// Says in WGSL that the three channels of a medium are alike.
-pub(crate) const MONOCHROME: &str = "MONOCHROME";
+/// What of a medium decides which code scatters it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct MediumKind {
+    /// Whether the three channels are alike.
+    pub monochrome: bool,
+    /// Whether light wanders differently far from place to place.
+    pub scaled: bool,
+}
+
+impl MediumKind {
+    /// Each at its index.
+    pub const ALL: [Self; 4] = [
+        Self { monochrome: false, scaled: false },
+        Self { monochrome: true, scaled: false },
+        Self { monochrome: false, scaled: true },
+        Self { monochrome: true, scaled: true },
+    ];
+
+    pub fn index(self) -> usize {
+        usize::from(self.monochrome) + 2 * usize::from(self.scaled)
+    }
+
+    /// Of WGSL.
+    pub fn constants(self) -> [(&'static str, f64); 2] {
+        let on = |on: bool| f64::from(u8::from(on));
+        [("MONOCHROME", on(self.monochrome)), ("SCALED", on(self.scaled))]
+    }
+}
 
 /// Threads of a workgroup; `WORKGROUP` in `shared/dispatch.wgsl`.
 const WORKGROUP: u32 = 64;

@@ -185,7 +185,8 @@ pub(crate) struct LevelLayout {
     pub node_offset: u32,
     pub source_offset: u32,
     pub receiver_offset: u32,
-    pub padding: [u32; 2],
+    pub child_sources: u32,
+    pub padding: u32,
 }
 
 /// A texel or a group of them seen as a source whose place is known.
@@ -195,7 +196,7 @@ pub(crate) struct LampLayout {
     pub power: [f32; 3],
     pub spread: f32,
     pub normal: [f32; 3],
-    pub padding: u32,
+    pub marks: u32,
 }
 
 /// A group of texels seen as one receiver.
@@ -258,7 +259,7 @@ pub(crate) struct ScatterLayout {
     pub theta_squared: f32,
     pub z_r_squared: f32,
     pub padding: [u32; 2],
-    pub offsets: [[u32; 4]; 4],
+    pub sources: [[u32; 4]; 4],
 }
 
 #[repr(C)]
@@ -388,7 +389,15 @@ mod tests {
             CLUSTER,
             "Level",
             LevelLayout,
-            [child_count, node_count, child_offset, node_offset, source_offset, receiver_offset]
+            [
+                child_count,
+                node_count,
+                child_offset,
+                node_offset,
+                source_offset,
+                receiver_offset,
+                child_sources
+            ]
         );
         check!(CLUSTER, "Need", NeedLayout, [view_projection, eye, kind]);
         check!(CLUSTER, "Cluster", Cluster, [centroid, spread, power, radius, normal, area]);
@@ -397,14 +406,14 @@ mod tests {
             SCATTER,
             "Scatter",
             ScatterLayout,
-            [table, texel_count, first_source, source_count, top_level, theta_squared, z_r_squared, offsets]
+            [table, texel_count, first_source, source_count, top_level, theta_squared, z_r_squared, sources]
         );
         assert_eq!(
             u64::from(naga_layout(translume_shaders::DUAL.source, "Expansion").1),
             crate::stages::scatter::dual::EXPANSION
         );
         check!(DUAL, "Term", TermLayout, [depth, weight]);
-        check!(DUAL, "Lamp", LampLayout, [power, spread, normal]);
+        check!(DUAL, "Lamp", LampLayout, [power, spread, normal, marks]);
         check!(CLUSTER, "Receiver", ReceiverLayout, [centre, spread, radius, texels]);
         check!(
             DUAL,

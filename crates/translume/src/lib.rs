@@ -57,6 +57,7 @@ mod shadow_options;
 mod shadow_view;
 mod stages;
 mod standing;
+mod variation;
 
 pub use area_light::{RectangleLight, SphereLight};
 pub use body::Body;
@@ -77,6 +78,7 @@ pub use stages::composite::{Composite, CompositeTarget, CompositeView, Gloss};
 pub use stages::scatter::Method;
 pub use stages::shadow::ShadowView;
 pub use stages::{Stage, StageSet};
+pub use variation::Variation;
 
 use std::sync::Arc;
 

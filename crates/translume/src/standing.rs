@@ -1,13 +1,14 @@
 //! On which texel each vertex stands.
 
+use crate::variation::{VERTEX_MARK, Variation};
 use glam::Vec3;
 use translume_mesh::{Atlas, Mesh};
 
 /// The texel under each vertex, and which texels have a vertex.
 pub(crate) struct Standing {
     pub texels: Vec<u32>,
-    /// One bit a texel.
-    pub bits: Vec<u32>,
+    /// Of each texel, without variation of the medium.
+    pub marks: Vec<u32>,
 }
 
 impl Standing {
@@ -25,11 +26,9 @@ impl Standing {
             // Nobody sees a vertex of no triangle.
             *texel = if drawn[vertex] { nearest(mesh, atlas, mesh.positions[vertex].into()) } else { 0 };
         }
-        let mut bits = vec![0; atlas.texels.len().div_ceil(32)];
-        for texel in &texels {
-            bits[*texel as usize / 32] |= 1 << (texel % 32);
-        }
-        Self { texels, bits }
+        let mut marks = vec![Variation::default().mark(); atlas.texels.len()];
+        texels.iter().for_each(|texel| marks[*texel as usize] |= VERTEX_MARK);
+        Self { texels, marks }
     }
 }
 

@@ -24,4 +24,5 @@ mod scatter;
 mod shadow;
 mod sky;
 mod stages;
+mod variation;
 mod work;

@@ -105,12 +105,7 @@ impl Body {
                 (Some(memory), Method::Dual { .. }) => {
                     stages.scatter.dual.encode(&mut pass, memory, &self.tree, self.extent.vertices);
                 }
-                _ => stages.scatter.encode(
-                    &mut pass,
-                    &self.scatter_group,
-                    (self.method, self.medium.is_monochrome()),
-                    texels,
-                ),
+                _ => stages.scatter.encode(&mut pass, &self.scatter_group, (self.method, self.kind), texels),
             }
         }
         if pending.contains(Stage::Resolve) && self.points().is_none() {

@@ -28,7 +28,6 @@ impl Body {
         }
     }
 
-    /// A body without a tree is left to its texels.
     fn choose(&self, view: Option<&View>, corners: &[Vec3; 8]) -> Evaluate {
         if self.dual_theta().is_none() {
             return Evaluate::PerTexel;
@@ -44,7 +43,7 @@ impl Body {
             vertices: self.extent.vertices,
             edge: scale * self.shape.edge,
             texel: scale * self.shape.texel,
-            path: self.medium.shortest_path(),
+            path: self.medium.shortest_path() / self.greatest_scale,
             view,
             corners: corners.map(|corner| corner / self.mm_per_unit),
         }

@@ -16,7 +16,7 @@ pub(crate) struct ClusterStage {
 /// Where the levels of a body's tree lie. Level 0 is the texels; level l has one node for every 4^l of them.
 #[derive(Clone, Debug)]
 pub(crate) struct Tree {
-    /// Nodes of each level, from the texels up to a single node.
+    /// Nodes of each level, from the texels up to a single node; two levels at least.
     pub counts: Vec<u32>,
     /// First entry of each level in the buffer of clusters; level 0 is not in it.
     pub offsets: Vec<u32>,
@@ -30,7 +30,7 @@ impl Tree {
         let mut offsets = vec![0];
         let mut total = 0;
         let mut count = texels;
-        while count > 1 {
+        while count > 1 || counts.len() == 1 {
             count = count.div_ceil(4);
             counts.push(count);
             offsets.push(total);
@@ -69,7 +69,8 @@ impl Tree {
                 node_offset: self.offsets[level],
                 source_offset: self.source_offsets[level],
                 receiver_offset: self.sources() + self.offsets[level],
-                padding: [0; 2],
+                child_sources: self.source_offsets[level - 1],
+                padding: 0,
             };
             let at = stride * (level - 1);
             bytes[at..at + size_of::<LevelLayout>()].copy_from_slice(bytemuck::bytes_of(&uniform));
@@ -101,7 +102,7 @@ impl ClusterStage {
             buffers.bounds.as_entire_binding(),
             buffers.lamps.as_entire_binding(),
             buffers.need.as_entire_binding(),
-            buffers.under_vertices.as_entire_binding(),
+            buffers.marks.as_entire_binding(),
         ];
         gpu::bind(device, "cluster", &self.layout, &resources)
     }

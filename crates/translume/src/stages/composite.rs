@@ -3,7 +3,7 @@
 //! reads  positions, normals, exitance of texels, vertices or points       writes  the host's colour and depth attachments
 //! twin   `translume_reference::composite`           WGSL    `composite.wgsl`
 
-use crate::gpu::{self, DEPTH_MAPS, FLOAT_TEXTURE, READ, UNIFORM};
+use crate::gpu::{self, DEPTH_MAPS, FLOAT_TEXTURE, MediumKind, READ, UNIFORM};
 use crate::layout::{AtlasVertexLayout, CompositeLayout};
 use crate::stages::scatter::points::{PointMemory, Points};
 use crate::{Body, Camera};
@@ -50,8 +50,8 @@ pub struct Composite {
     device: wgpu::Device,
     layout: wgpu::BindGroupLayout,
     target: CompositeTarget,
-    /// Of exitance at texels, at vertices, at fragments, and at fragments of a medium that is the same in all channels.
-    kinds: [Kind; 4],
+    /// Of exitance at texels, at vertices, and at fragments of each kind of medium.
+    kinds: [Kind; FRAGMENTS + 4],
     depth: wgpu::PipelineLayout,
     /// Draws depth before exitance is summed up at fragments.
     depth_alone: OnceLock<wgpu::RenderPipeline>,
@@ -60,10 +60,10 @@ pub struct Composite {
 const TEXELS: usize = 0;
 const VERTICES: usize = 1;
 const FRAGMENTS: usize = 2;
-const GREY_FRAGMENTS: usize = 3;
 
 /// What draws one kind of exitance.
 struct Kind {
+    medium: MediumKind,
     layout: wgpu::PipelineLayout,
     shader: translume_shaders::Shader,
     /// For smooth normals and for flat ones, made when a body first needs them.
@@ -90,7 +90,8 @@ impl Composite {
     pub(crate) fn new(device: &wgpu::Device, points: &Points, target: CompositeTarget) -> Self {
         let types = [UNIFORM, READ, READ, FLOAT_TEXTURE, UNIFORM, DEPTH_MAPS];
         let layout = gpu::layout(device, "composite", ShaderStages::VERTEX_FRAGMENT, &types);
-        let kind = |shader, second: Option<&wgpu::BindGroupLayout>| Kind {
+        let kind = |shader, second: Option<&wgpu::BindGroupLayout>, medium| Kind {
+            medium,
             layout: gpu::pipeline_layout(
                 device,
                 "composite",
@@ -99,13 +100,17 @@ impl Composite {
             shader,
             pipelines: <[OnceLock<_>; 2]>::default(),
         };
+        let fragments =
+            |k| kind(translume_shaders::COMPOSITE_FRAGMENTS, Some(&points.field), MediumKind::ALL[k]);
         let kinds = [
-            kind(translume_shaders::COMPOSITE, None),
-            kind(translume_shaders::COMPOSITE_VERTICES, Some(&points.seen)),
-            kind(translume_shaders::COMPOSITE_FRAGMENTS, Some(&points.field)),
-            kind(translume_shaders::COMPOSITE_FRAGMENTS, Some(&points.field)),
+            kind(translume_shaders::COMPOSITE, None, MediumKind::default()),
+            kind(translume_shaders::COMPOSITE_VERTICES, Some(&points.seen), MediumKind::default()),
+            fragments(0),
+            fragments(1),
+            fragments(2),
+            fragments(3),
         ];
-        let depth = kind(translume_shaders::COMPOSITE, None).layout;
+        let depth = kind(translume_shaders::COMPOSITE, None, MediumKind::default()).layout;
         let composite =
             Self { device: device.clone(), layout, target, kinds, depth, depth_alone: OnceLock::new() };
         for flat in [false, true] {
@@ -115,9 +120,10 @@ impl Composite {
     }
 
     fn pipeline(&self, kind: usize, flat: bool) -> &wgpu::RenderPipeline {
-        let Kind { layout, shader, pipelines } = &self.kinds[kind];
+        let Kind { medium, layout, shader, pipelines } = &self.kinds[kind];
         pipelines[usize::from(flat)].get_or_init(|| {
-            let pass = Pass::Picture { flat, after_depth: kind >= FRAGMENTS, grey: kind == GREY_FRAGMENTS };
+            let medium = (kind >= FRAGMENTS).then_some(*medium);
+            let pass = Pass::Picture { flat, medium };
             pipeline(&self.device, layout, *shader, self.target, pass)
         })
     }
@@ -181,8 +187,7 @@ impl CompositeView {
         self.kind = match body.points() {
             None => TEXELS,
             Some(PointMemory::Vertices { .. }) => VERTICES,
-            Some(PointMemory::Fragments { .. }) if body.medium().is_monochrome() => GREY_FRAGMENTS,
-            Some(PointMemory::Fragments { .. }) => FRAGMENTS,
+            Some(PointMemory::Fragments { .. }) => FRAGMENTS + body.kind.index(),
         };
         let to_world = Mat4::from_scale(Vec3::splat(1.0 / body.mm_per_unit));
         let uniform = CompositeLayout {
@@ -221,7 +226,11 @@ fn bind(
 
 #[derive(Clone, Copy)]
 enum Pass {
-    Picture { flat: bool, after_depth: bool, grey: bool },
+    /// With the kind of medium where exitance is summed up at fragments, after a depth pass.
+    Picture {
+        flat: bool,
+        medium: Option<MediumKind>,
+    },
     DepthAlone,
 }
 
@@ -243,17 +252,14 @@ fn pipeline(
 ) -> wgpu::RenderPipeline {
     let module = &gpu::module(device, shader);
     let (entry_point, after_depth, write_mask) = match pass {
-        Pass::Picture { after_depth, .. } => ("fragment", after_depth, wgpu::ColorWrites::ALL),
+        Pass::Picture { medium, .. } => ("fragment", medium.is_some(), wgpu::ColorWrites::ALL),
         Pass::DepthAlone => ("depth_alone", false, wgpu::ColorWrites::empty()),
     };
-    let on = |on: bool| f64::from(u8::from(on));
-    let constants = match pass {
-        Pass::Picture { flat, grey: true, .. } => {
-            vec![("FLAT_NORMALS", on(flat)), (gpu::MONOCHROME, 1.0)]
-        }
-        Pass::Picture { flat, .. } => vec![("FLAT_NORMALS", on(flat))],
-        Pass::DepthAlone => Vec::new(),
-    };
+    let mut constants = Vec::new();
+    if let Pass::Picture { flat, medium } = pass {
+        constants.push(("FLAT_NORMALS", f64::from(u8::from(flat))));
+        constants.extend(medium.iter().flat_map(|medium| medium.constants()));
+    }
     let vertex = wgpu::VertexBufferLayout {
         array_stride: size_of::<AtlasVertexLayout>() as u64,
         step_mode: wgpu::VertexStepMode::Vertex,

@@ -7,7 +7,9 @@ use super::points::{Field, PointMemory, Points};
 use crate::Error;
 use crate::buffers::Buffers;
 use crate::evaluate::Evaluate;
-use crate::gpu::{self, Chromatic, FLOAT_TEXTURE, Pass, READ, UNIFORM_ARRAY, UNIFORM_STRIDE, WRITE};
+use crate::gpu::{
+    self, FLOAT_TEXTURE, MediumKind, Pass, PerMedium, READ, UNIFORM_ARRAY, UNIFORM_STRIDE, WRITE,
+};
 use crate::layout::{DualLayout, ScatterLayout, TermLayout};
 use crate::stages::cluster::Tree;
 
@@ -28,8 +30,8 @@ pub(crate) const EXPANSION: u64 = 160;
 pub(crate) struct Dual {
     layout: wgpu::BindGroupLayout,
     start: wgpu::ComputePipeline,
-    inner: Chromatic,
-    leaf: Chromatic,
+    inner: PerMedium,
+    leaf: PerMedium,
     pub points: Points,
 }
 
@@ -42,7 +44,7 @@ pub(crate) struct DualMemory {
     capacity: u32,
     first_expansion: u32,
     evaluate: Evaluate,
-    pub monochrome: bool,
+    pub kind: MediumKind,
     /// Where exitance is evaluated at points.
     pub points: Option<PointMemory>,
 }
@@ -108,8 +110,8 @@ impl Dual {
         let pipelines = gpu::pipeline_layout(device, "dual", &[&layout]);
         Self {
             start: gpu::compute_pipeline(device, &layout, &module, "start"),
-            inner: Chromatic::new(device, &pipelines, &module, "inner"),
-            leaf: Chromatic::new(device, &pipelines, &module, "leaf"),
+            inner: PerMedium::new(device, &pipelines, &module, "inner"),
+            leaf: PerMedium::new(device, &pipelines, &module, "leaf"),
             points: Points::new(device),
             layout,
         }
@@ -158,7 +160,7 @@ impl Dual {
             capacity,
             first_expansion,
             evaluate,
-            monochrome: false,
+            kind: MediumKind::default(),
             points,
         }
     }
@@ -170,12 +172,12 @@ impl Dual {
         let last = u32::from(memory.points.is_some());
         for level in (last..=memory.start_level).rev() {
             let pipeline = if level > 0 { &self.inner } else { &self.leaf };
-            pass.set_pipeline(pipeline.get(memory.monochrome));
+            pass.set_pipeline(pipeline.get(memory.kind));
             pass.set_bind_group(&memory.group, &[level * UNIFORM_STRIDE as u32]);
             pass.dispatch(tree.counts[level as usize]);
         }
         if let Some(points) = &memory.points {
-            self.points.encode(pass, points, vertices, memory.monochrome);
+            self.points.encode(pass, points, vertices, memory.kind);
         }
     }
 }
@@ -193,9 +195,9 @@ impl DualMemory {
     /// One uniform per level of receivers, ready for dynamic offsets.
     pub fn write(&self, queue: &wgpu::Queue, scatter: &ScatterLayout, tree: &Tree, theta: f32) {
         let stride = UNIFORM_STRIDE as usize;
-        let mut sources = [[0; 4]; 4];
-        for (level, offset) in tree.source_offsets.iter().enumerate() {
-            sources[level / 4][level % 4] = *offset;
+        let mut offsets = [[0; 4]; 4];
+        for (level, offset) in tree.offsets.iter().enumerate() {
+            offsets[level / 4][level % 4] = *offset;
         }
         let mut bytes = vec![0; stride * (self.start_level as usize + 1)];
         for (level, slot) in (0..).zip(bytes.chunks_mut(stride)) {
@@ -213,8 +215,8 @@ impl DualMemory {
                 first_expansion: self.first_expansion,
                 padding: [0; 2],
                 terms: [TermLayout::default(); 2],
-                offsets: scatter.offsets,
-                sources,
+                offsets,
+                sources: scatter.sources,
             };
             slot[..size_of::<DualLayout>()].copy_from_slice(bytemuck::bytes_of(&uniform));
         }

@@ -1,14 +1,16 @@
 //! Scatter: irradiance → radiant exitance per texel, B_i = Σ_j E_j·A_j·K̄(|p_i − p_j|, s_j).
 //!
-//! reads  texel positions, normals, irradiance, clusters, kernel table      writes  exitance per texel, linear RGB
-//! twin   `translume_reference::scatter`                                    WGSL    `scatter.wgsl`
+//! reads  bounds and lamps of the tree, kernel table      writes  exitance per texel, linear RGB
+//! twin   `translume_reference::scatter`                  WGSL    `scatter.wgsl`
 
 pub(crate) mod dual;
 pub(crate) mod points;
 
 use crate::Error;
 use crate::buffers::Buffers;
-use crate::gpu::{self, Chromatic, FLOAT_TEXTURE, Pass, READ, UNIFORM_ARRAY, UNIFORM_STRIDE, WRITE};
+use crate::gpu::{
+    self, FLOAT_TEXTURE, MediumKind, Pass, PerMedium, READ, UNIFORM_ARRAY, UNIFORM_STRIDE, WRITE,
+};
 use crate::kernel_table::KernelTableLayout;
 use crate::layout::ScatterLayout;
 use crate::profile::Dipole;
@@ -87,20 +89,20 @@ pub(crate) const SOURCES_PER_DISPATCH: u32 = 8192;
 
 pub(crate) struct Scatter {
     layout: wgpu::BindGroupLayout,
-    all_pairs: Chromatic,
-    tree: Chromatic,
+    all_pairs: PerMedium,
+    tree: PerMedium,
     pub dual: dual::Dual,
 }
 
 impl Scatter {
     pub fn new(device: &wgpu::Device) -> Self {
-        let types = [UNIFORM_ARRAY, READ, READ, READ, READ, WRITE, FLOAT_TEXTURE];
+        let types = [UNIFORM_ARRAY, READ, READ, WRITE, FLOAT_TEXTURE];
         let layout = gpu::layout(device, "scatter", wgpu::ShaderStages::COMPUTE, &types);
         let module = gpu::module(device, translume_shaders::SCATTER);
         let pipelines = gpu::pipeline_layout(device, "scatter", &[&layout]);
         Self {
-            all_pairs: Chromatic::new(device, &pipelines, &module, "all_pairs"),
-            tree: Chromatic::new(device, &pipelines, &module, "tree"),
+            all_pairs: PerMedium::new(device, &pipelines, &module, "all_pairs"),
+            tree: PerMedium::new(device, &pipelines, &module, "tree"),
             dual: dual::Dual::new(device),
             layout,
         }
@@ -114,10 +116,8 @@ impl Scatter {
     ) -> wgpu::BindGroup {
         let resources = [
             gpu::uniform_slot::<ScatterLayout>(&buffers.scatter_uniforms),
-            buffers.texel_positions.as_entire_binding(),
-            buffers.texel_normals.as_entire_binding(),
-            buffers.irradiance.as_entire_binding(),
-            buffers.clusters.as_entire_binding(),
+            buffers.bounds.as_entire_binding(),
+            buffers.lamps.as_entire_binding(),
             buffers.exitance.as_entire_binding(),
             wgpu::BindingResource::TextureView(kernel_table),
         ];
@@ -128,6 +128,7 @@ impl Scatter {
     pub fn layout(
         table: KernelTableLayout,
         channels: &[Dipole; 3],
+        greatest_scale: f32,
         tree: &Tree,
         method: Method,
     ) -> ScatterLayout {
@@ -136,10 +137,10 @@ impl Scatter {
             _ => 0.0,
         };
         let scattering = channels.iter().filter(|dipole| dipole.total() > 0.0);
-        let z_r = scattering.map(|dipole| dipole.z_r as f32).fold(1e15, f32::min);
-        let mut offsets = [[0; 4]; 4];
-        for (level, offset) in tree.offsets.iter().enumerate() {
-            offsets[level / 4][level % 4] = *offset;
+        let z_r = scattering.map(|dipole| dipole.z_r as f32).fold(1e15, f32::min) / greatest_scale;
+        let mut sources = [[0; 4]; 4];
+        for (level, offset) in tree.source_offsets.iter().enumerate() {
+            sources[level / 4][level % 4] = *offset;
         }
         ScatterLayout {
             table,
@@ -150,7 +151,7 @@ impl Scatter {
             theta_squared: theta * theta,
             z_r_squared: z_r * z_r,
             padding: [0; 2],
-            offsets,
+            sources,
         }
     }
 
@@ -172,20 +173,20 @@ impl Scatter {
         &self,
         pass: &mut Pass<'_>,
         group: &wgpu::BindGroup,
-        (method, monochrome): (Method, bool),
+        (method, kind): (Method, MediumKind),
         texels: u32,
     ) {
         match method {
             Method::AllPairs => {
-                pass.set_pipeline(self.all_pairs.get(monochrome));
+                pass.set_pipeline(self.all_pairs.get(kind));
                 for k in 0..texels.div_ceil(SOURCES_PER_DISPATCH) {
                     pass.set_bind_group(group, &[k * UNIFORM_STRIDE as u32]);
                     pass.dispatch(texels);
                 }
             }
-            // `dual` has its own; it comes here for a body of a single texel.
+            // `dual` has its own.
             _ => {
-                pass.set_pipeline(self.tree.get(monochrome));
+                pass.set_pipeline(self.tree.get(kind));
                 pass.set_bind_group(group, &[0]);
                 pass.dispatch(texels);
             }

@@ -5,7 +5,7 @@
 
 use crate::buffers::Buffers;
 use crate::evaluate::Evaluate;
-use crate::gpu::{self, Chromatic, FLOAT_TEXTURE, Pass, READ, UNIFORM, WRITE};
+use crate::gpu::{self, FLOAT_TEXTURE, MediumKind, Pass, PerMedium, READ, UNIFORM, WRITE};
 use crate::layout::DualLayout;
 use wgpu::ShaderStages;
 
@@ -15,7 +15,7 @@ pub(crate) struct Points {
     /// Exitance of the vertices, for [`Composite`](crate::Composite).
     pub seen: wgpu::BindGroupLayout,
     vertices_layout: wgpu::BindGroupLayout,
-    vertices: Chromatic,
+    vertices: PerMedium,
 }
 
 /// What a body whose exitance is evaluated at points remembers.
@@ -42,7 +42,7 @@ impl Points {
         let module = gpu::module(device, translume_shaders::VERTICES);
         let layout = gpu::pipeline_layout(device, "vertices", &[&vertices_layout, &field]);
         Self {
-            vertices: Chromatic::new(device, &layout, &module, "vertices"),
+            vertices: PerMedium::new(device, &layout, &module, "vertices"),
             seen: gpu::layout(device, "exitance of vertices", ShaderStages::VERTEX, &[READ]),
             field,
             vertices_layout,
@@ -95,9 +95,9 @@ impl Points {
         gpu::bind(device, "field", &self.field, &resources)
     }
 
-    pub fn encode(&self, pass: &mut Pass<'_>, memory: &PointMemory, vertices: u32, monochrome: bool) {
+    pub fn encode(&self, pass: &mut Pass<'_>, memory: &PointMemory, vertices: u32, kind: MediumKind) {
         if let PointMemory::Vertices { field, own, .. } = memory {
-            pass.set_pipeline(self.vertices.get(monochrome));
+            pass.set_pipeline(self.vertices.get(kind));
             pass.set_bind_group(own, &[]);
             pass.set_second_group(field);
             pass.dispatch(vertices);
