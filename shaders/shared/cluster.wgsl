@@ -48,13 +48,13 @@ struct Lamp {
 // What a texel is marked with, in one word: whether a vertex stands on it, how far light wanders under it, and the square root of its albedo.
 const VERTEX_MARK: u32 = 0x80000000u;
 
-// Factor on the scattering coefficients, in steps of 2 % from 1/4 to 4.
+// Factor on the scattering coefficients, in thirtieths of an octave from 1/4 to 4.
 fn marked_scale(marks: u32) -> f32 {
-    return exp2((f32(marks >> 24u & 127u) - 64.0) / 31.5);
+    return exp2((f32(marks >> 24u & 127u) - 64.0) / 30.0);
 }
 
 fn scale_mark(scale: f32) -> u32 {
-    return u32(clamp(round(31.5 * log2(scale)) + 64.0, 0.0, 127.0)) << 24u;
+    return u32(clamp(round(30.0 * log2(scale)) + 64.0, 0.0, 127.0)) << 24u;
 }
 
 // What albedo lets in, and again what it lets out.

@@ -12,7 +12,7 @@ pub struct Variation {
     /// Linear RGB, 0..=1, kept in 255 steps of its square root. Half of it, its square root, multiplies the light that enters and half what
     /// leaves, so that an evenly lit surface is multiplied by the whole.
     pub albedo: [f32; 3],
-    /// Factor on both coefficients of the medium for light that enters here, 0.25..=4, kept in steps of 2 %: 2 halves the distances it wanders. The
+    /// Factor on both coefficients of the medium for light that enters here, 0.25..=4, kept in thirtieths of an octave: 2 halves the distances it wanders. The
     /// light that comes back is as much as before.
     pub scale: f32,
 }
@@ -43,7 +43,7 @@ impl Variation {
     /// In one word, as in `shared/cluster.wgsl`.
     pub(crate) fn mark(&self) -> u32 {
         let [red, green, blue] = self.albedo.map(|albedo| (255.0 * albedo.sqrt()).round() as u32);
-        let scale = (31.5 * self.scale.log2() + 64.0).round().clamp(0.0, 127.0) as u32;
+        let scale = (30.0 * self.scale.log2() + 64.0).round().clamp(0.0, 127.0) as u32;
         scale << 24 | blue << 16 | green << 8 | red
     }
 }
