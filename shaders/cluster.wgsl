@@ -99,7 +99,7 @@ fn from_texels(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) gro
             let extent = select(0.0, children[k].spread, (need.kind & POINTS) != 0u);
             receiving[k] = Receiver(children[k].centroid, extent, CORNER * extent, select(0u, 1u, needed), 0u, 0u);
             bounds[node * 4u + k] = vec4f(children[k].centroid, select(0.0, NO_SIZE, any(children[k].power > vec3f(0.0))));
-            lamps[node * 4u + k] = Lamp(children[k].power, NEIGHBOUR_NARROWING * children[k].spread, children[k].normal, marks[node * 4u + k]);
+            lamps[node * 4u + k] = Lamp(children[k].power, NEIGHBOUR_NARROWING * children[k].spread, children[k].normal, marks[node * 4u + k], packed_moments(disc_moments(children[k].normal)), 0u);
         }
     }
     let count = min(level.child_count - node * 4u, 4u);
@@ -130,9 +130,27 @@ fn store(node: u32, children: ptr<function, array<Cluster, 4>>, count: u32, rece
     receivers[level.node_offset + node] = receiver;
     let size = select(0.0, max(size_of(cluster.spread, cluster.radius), NO_SIZE), any(cluster.power > vec3f(0.0)));
     bounds[level.source_offset + node] = vec4f(cluster.centroid, size);
-    lamps[level.source_offset + node] = Lamp(cluster.power, cluster.spread, cluster.normal, mean_scale(node, children, count));
+    lamps[level.source_offset + node] = Lamp(cluster.power, cluster.spread, cluster.normal, mean_scale(node, children, count), packed_moments(moments(node, cluster, children, count)), 0u);
     let extent = select(NOT_NEEDED, size_of(receiver.spread, receiver.radius), receiver.texels > 0u);
     bounds[level.receiver_offset + node] = vec4f(receiver.centre, extent);
+}
+
+// Second moments of a cluster over spread², as children weigh in `merge`.
+fn moments(node: u32, cluster: Cluster, children: ptr<function, array<Cluster, 4>>, count: u32) -> Moments {
+    let total = dot(cluster.power, vec3f(1.0));
+    var sum = Moments(vec3f(0.0), vec3f(0.0));
+    for (var k = 0u; k < count; k++) {
+        var weight = 1.0 / f32(count);
+        if total > 0.0 { weight = dot((*children)[k].power, vec3f(1.0)) / total; }
+        let own = unpacked_moments(lamps[level.child_sources + node * 4u + k].moments);
+        let offset = (*children)[k].centroid - cluster.centroid;
+        let spread = (*children)[k].spread;
+        sum.diagonal += weight * (spread * spread * own.diagonal + offset * offset);
+        sum.mixed += weight * (spread * spread * own.mixed + offset.xxy * offset.yzz);
+    }
+    let trace = sum.diagonal.x + sum.diagonal.y + sum.diagonal.z;
+    let scale = select(0.0, 1.0 / trace, trace > 0.0);
+    return Moments(scale * sum.diagonal, scale * sum.mixed);
 }
 
 // How far light wanders from a cluster: the mean over its power.

@@ -9,7 +9,7 @@ fn sent(source: u32, own: u32, receiver: vec3f, normal: vec3f) -> vec4f {
 fn collect(e: ptr<function, Expansion>, lamp: Lamp, d: vec3f, least_r2: f32) {
     let c2 = scale_square(lamp);
     let r2 = max(c2 * dot(d, d), least_r2);
-    let jet = profile_jet(dual.table, kernel_table, r2, c2 * lamp.spread * lamp.spread, facing_square(d, lamp.normal));
+    let jet = profile_jet(dual.table, kernel_table, r2, c2 * lamp.spread * lamp.spread, facing(d, lamp));
     let power = c2 * lamp.power;
     let first = 2.0 * c2 * power * jet.first;
     let second = 4.0 * c2 * c2 * power * jet.second;

@@ -25,7 +25,7 @@ fn jet_of_term(o: Offsets, lamp: Lamp, spread: f32, least_r2: f32) -> Jet {
 }
 
 fn jet_of_channel(d: vec3f, lamp: Lamp, spread: f32, least_r2: f32) -> Jet {
-    return profile_jet(dual.table, kernel_table, max(dot(d, d), least_r2), spread * spread, facing_square(d, lamp.normal));
+    return profile_jet(dual.table, kernel_table, max(dot(d, d), least_r2), spread * spread, facing(d, lamp));
 }
 
 // What a source sends to a point, and the one evaluation it took. own: the texel in whose middle the point is

@@ -43,6 +43,33 @@ struct Lamp {
     normal: vec3f,
     // Of a texel all its marks, of a cluster those of how far light wanders.
     marks: u32,
+    // Second moments of the power over their trace, spread²: xx yy, zz xy, xz yz.
+    moments: vec3u,
+    padding: u32,
+}
+
+// A symmetric matrix.
+struct Moments {
+    // xx yy zz
+    diagonal: vec3f,
+    // xy xz yz
+    mixed: vec3f,
+}
+
+// Of a texel: a disc.
+fn disc_moments(normal: vec3f) -> Moments {
+    return Moments(0.5 - 0.5 * normal * normal, -0.5 * normal.xxy * normal.yzz);
+}
+
+fn packed_moments(m: Moments) -> vec3u {
+    return vec3u(
+        pack2x16snorm(m.diagonal.xy), pack2x16snorm(vec2f(m.diagonal.z, m.mixed.x)), pack2x16snorm(m.mixed.yz));
+}
+
+fn unpacked_moments(m: vec3u) -> Moments {
+    let a = unpack2x16snorm(m.x);
+    let b = unpack2x16snorm(m.y);
+    return Moments(vec3f(a, b.x), vec3f(b.y, unpack2x16snorm(m.z)));
 }
 
 // What a texel is marked with, in one word: whether a vertex stands on it, how far light wanders under it, and the square root of its albedo.

@@ -7,7 +7,7 @@ override SCALED: bool = false;
 fn received(table: KernelTable, offset: vec3f, lamp: Lamp, own: bool) -> vec3f {
     let spread = lamp.spread * select(1.0, 1.0 / NEIGHBOUR_NARROWING, own);
     let c2 = scale_square(lamp);
-    let profile = area_averaged_profile(table, kernel_table, c2 * dot(offset, offset), c2 * spread * spread, facing_square(offset, lamp.normal));
+    let profile = area_averaged_profile(table, kernel_table, c2 * dot(offset, offset), c2 * spread * spread, facing(offset, lamp));
     return lamp.power * (c2 * profile);
 }
 
@@ -18,11 +18,13 @@ fn scale_square(lamp: Lamp) -> f32 {
     return scale * scale;
 }
 
-// Squared cosine between a source's normal and the line to a receiver.
-fn facing_square(offset: vec3f, normal: vec3f) -> f32 {
+// How much a source faces a receiver: 1 where it does not reach towards it, 0 as a disc that lies along the line, below where it reaches
+// further than that. To second order in its size nothing else counts.
+fn facing(offset: vec3f, lamp: Lamp) -> f32 {
+    let m = unpacked_moments(lamp.moments);
     let r2 = dot(offset, offset);
-    let along = dot(offset, normal);
-    return min(select(0.0, along * along / r2, r2 > 0.0), 1.0);
+    let along = dot(m.diagonal, offset * offset) + 2.0 * dot(m.mixed, offset.xxy * offset.yzz);
+    return min(1.0 - 2.0 * select(0.5, along / r2, r2 > 0.0), 1.0);
 }
 
 // Nodes of a level of the tree; level 0 is the texels.

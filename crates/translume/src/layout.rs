@@ -197,6 +197,8 @@ pub(crate) struct LampLayout {
     pub spread: f32,
     pub normal: [f32; 3],
     pub marks: u32,
+    pub moments: [u32; 3],
+    pub padding: u32,
 }
 
 /// A group of texels seen as one receiver.
@@ -413,7 +415,7 @@ mod tests {
             crate::stages::scatter::dual::EXPANSION
         );
         check!(DUAL, "Term", TermLayout, [depth, weight]);
-        check!(DUAL, "Lamp", LampLayout, [power, spread, normal, marks]);
+        check!(DUAL, "Lamp", LampLayout, [power, spread, normal, marks, moments]);
         check!(CLUSTER, "Receiver", ReceiverLayout, [centre, spread, radius, texels]);
         check!(
             DUAL,

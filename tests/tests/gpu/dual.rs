@@ -306,7 +306,7 @@ fn milliseconds(fixture: &mut Fixture, method: Method) -> f64 {
 fn full_size() {
     let methods = [
         Method::Tree { theta: 0.4 },
-        Method::Dual { theta: 0.6 },
+        Method::Dual { theta: 1.0 },
         Method::Dual { theta: 0.75 },
         Method::Dual { theta: 0.9 },
     ];
