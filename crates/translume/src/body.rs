@@ -20,6 +20,7 @@ use crate::stages::scatter::{Method, Scatter};
 use crate::stages::shadow::DepthMaps;
 use crate::stages::visibility::SkyMemory;
 use crate::stages::{Stage, StageSet, Stages};
+use crate::timings::Timer;
 use crate::{Error, Light, Medium, Profile, ShadowOptions};
 use glam::{Mat4, Vec3};
 use std::sync::Arc;
@@ -68,6 +69,9 @@ pub struct Body {
     surface_stale: bool,
     shadows_stale: bool,
     never_prepared: bool,
+    is_timed: bool,
+    /// Made by the first frame that is timed.
+    timer: Option<Timer>,
 
     exitance: wgpu::Texture,
     exitance_view: wgpu::TextureView,
@@ -137,6 +141,8 @@ impl Body {
             surface_stale: true,
             shadows_stale: false,
             never_prepared: true,
+            is_timed: false,
+            timer: None,
             exitance,
             exitance_view,
             depth_maps,
@@ -226,6 +232,9 @@ impl Body {
         self.surface_stale = false;
         self.shadows_stale = false;
         self.refresh_kernel(device, queue, frame::diagonal(&corners));
+        if self.is_timed {
+            self.timer.get_or_insert_with(|| Timer::new(device, queue)).next_frame();
+        }
         Ok(())
     }
 

@@ -1,5 +1,7 @@
 //! Short words for long wgpu descriptors.
 
+use crate::stages::Stage;
+use crate::timings::Recording;
 use std::borrow::Cow;
 use wgpu::BindingType;
 
@@ -132,17 +134,23 @@ pub struct Work {
     pub dispatches: u32,
 }
 
-/// A compute pass that counts.
+/// A compute pass that counts and is timed.
 pub(crate) struct Pass<'a> {
     pass: wgpu::ComputePass<'a>,
     work: &'a mut Work,
 }
 
 impl<'a> Pass<'a> {
-    pub fn begin(encoder: &'a mut wgpu::CommandEncoder, label: &str, work: &'a mut Work) -> Self {
-        let pass = encoder
-            .begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some(label), timestamp_writes: None });
-        Self { pass, work }
+    pub fn begin(
+        encoder: &'a mut wgpu::CommandEncoder,
+        stage: Stage,
+        recording: &'a mut Recording<'_>,
+    ) -> Self {
+        let pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+            label: Some(stage.name()),
+            timestamp_writes: recording.compute_pass(stage),
+        });
+        Self { pass, work: &mut recording.work }
     }
 
     pub fn set_pipeline(&mut self, pipeline: &wgpu::ComputePipeline) {

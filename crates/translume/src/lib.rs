@@ -55,6 +55,7 @@ pub mod readback;
 mod shadow_options;
 mod shadow_view;
 mod stages;
+mod timings;
 
 pub use area_light::{RectangleLight, SphereLight};
 pub use body::Body;
@@ -74,6 +75,7 @@ pub use stages::composite::{Composite, CompositeTarget, CompositeView, Gloss};
 pub use stages::scatter::Method;
 pub use stages::shadow::ShadowView;
 pub use stages::{Stage, StageSet};
+pub use timings::{Clock, FrameTimings};
 
 use std::sync::Arc;
 

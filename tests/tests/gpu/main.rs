@@ -23,4 +23,5 @@ mod scatter;
 mod shadow;
 mod sky;
 mod stages;
+mod timings;
 mod work;
