@@ -1,18 +1,35 @@
 //! Times of the stages, on a device with timestamps where the adapter has them, and on one without.
 
-use std::sync::OnceLock;
+use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
 use std::time::{Duration, Instant};
 use translume::{
     AmbientLight, Body, BodyDescriptor, Clock, Deformation, Frame, FrameTimings, Light, Lighting, Medium,
     PointLight, ShadowOptions, Stage, Work, wgpu,
 };
-use translume_tests::{Check, Gpu, creature, gpu, holds, notices};
+use translume_tests::{Check, Gpu, at_least, at_most, creature, holds, notices};
 
-/// A device with timestamps, where the adapter has them.
-fn timed() -> Option<&'static Gpu> {
-    static GPU: OnceLock<Gpu> = OnceLock::new();
-    let gpu = GPU.get_or_init(|| Gpu::with(wgpu::Features::TIMESTAMP_QUERY));
-    gpu.device.features().contains(wgpu::Features::TIMESTAMP_QUERY).then_some(gpu)
+/// Devices of these tests alone, used by one test at a time: whoever else polls a device may be running its callbacks still.
+struct Devices {
+    plain: Gpu,
+    /// With timestamps, where the adapter has them.
+    timed: Option<Gpu>,
+}
+
+fn devices() -> MutexGuard<'static, Devices> {
+    static DEVICES: OnceLock<Mutex<Devices>> = OnceLock::new();
+    let make = || {
+        let timed = Gpu::with(wgpu::Features::TIMESTAMP_QUERY);
+        let has_timestamps = timed.device.features().contains(wgpu::Features::TIMESTAMP_QUERY);
+        let plain = Gpu::with(wgpu::Features::empty());
+        Mutex::new(Devices { plain, timed: has_timestamps.then_some(timed) })
+    };
+    DEVICES.get_or_init(make).lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+impl Devices {
+    fn all(&self) -> impl Iterator<Item = &Gpu> {
+        self.timed.iter().chain([&self.plain])
+    }
 }
 
 /// The creature, a little further melted in each frame.
@@ -79,21 +96,21 @@ fn lamp(x: f32, shadow: bool) -> Light {
 
 /// Every stage took some time, the stages together no more than all, and all no more than the wall clock says.
 fn fits(timings: &FrameTimings, wall: Duration) -> Check {
-    let stages: Vec<_> = timings.stages.into_iter().flatten().collect();
-    let sum: Duration = stages.iter().sum();
-    if stages.is_empty() || stages.contains(&Duration::ZERO) {
-        return Err(format!("a stage took no time: {timings:?}"));
-    }
-    // Each stage and the whole are rounded to nanoseconds.
-    if sum > timings.total + Duration::from_nanos(8) || timings.total > wall {
-        return Err(format!("{sum:?} in {:?} in {wall:?}", timings.total));
-    }
-    Ok(())
+    let stages = || timings.stages.into_iter().flatten();
+    let sum: Duration = stages().sum();
+    let shortest = stages().min().unwrap_or_default();
+    at_least("timings: ns of the shortest stage", shortest.as_nanos() as f64, 1.0)?;
+    // Each stage and the whole are rounded to nanoseconds; measured 0.963.
+    let rounded = sum.saturating_sub(Duration::from_nanos(8));
+    at_most("timings: stages over frame", rounded.div_duration_f64(timings.total), 1.0)?;
+    // Measured 0.92 to 0.95 on lavapipe; a fast card waits longer for its orders than it works.
+    at_most("timings: frame over wall time", timings.total.div_duration_f64(wall), 1.0)
 }
 
 #[test]
 fn times_fit_into_the_frame() {
-    let Some(gpu) = timed() else { return };
+    let devices = devices();
+    let Some(gpu) = &devices.timed else { return };
     let mut melting = Melting::new(gpu);
     for _ in 0..3 {
         let wall = melting.run(MOVING, &[lamp(0.0, true)]);
@@ -106,17 +123,18 @@ fn times_fit_into_the_frame() {
             stages: timings.stages.map(|time| Some(time?.mul_f64(factor))),
             ..timings
         };
-        // Measured: the stages fill 0.7 to 0.97 of the wall time.
-        notices(fits(&scaled(10.0), wall));
+        notices(fits(&scaled(1000.0), wall));
         notices(fits(&scaled(1e-12), wall));
-        notices(fits(&FrameTimings { total: timings.total / 2, ..timings }, wall));
+        let sum: Duration = timings.stages.into_iter().flatten().sum();
+        notices(fits(&FrameTimings { total: sum / 2, ..timings }, wall));
     }
 }
 
 #[test]
 fn stages_that_ran_are_timed_and_no_others() {
     use Stage::{Cluster, Deform, Gather, Resolve, Scatter, Shadow, Visibility};
-    let Some(gpu) = timed() else { return };
+    let devices = devices();
+    let Some(gpu) = &devices.timed else { return };
     let mut melting = Melting::new(gpu);
     let every = [Deform, Shadow, Gather, Cluster, Scatter, Resolve];
     assert_eq!(melting.stages(STILL, &[lamp(0.0, true)]), every);
@@ -134,7 +152,8 @@ fn stages_that_ran_are_timed_and_no_others() {
 
 #[test]
 fn a_frame_in_parts_is_one() {
-    let Some(gpu) = timed() else { return };
+    let devices = devices();
+    let Some(gpu) = &devices.timed else { return };
     let mut melting = Melting::new(gpu);
     melting.prepare(MOVING, &[lamp(0.0, true)]);
     let parts = [Stage::Gather, Stage::Scatter, Stage::Resolve].map(|last| melting.commands(last).0);
@@ -147,7 +166,8 @@ fn a_frame_in_parts_is_one() {
 
 #[test]
 fn a_static_frame_has_no_times() {
-    for gpu in timed().into_iter().chain([gpu()]) {
+    let devices = devices();
+    for gpu in devices.all() {
         let mut melting = Melting::new(gpu);
         melting.run(MOVING, &[lamp(0.0, true)]);
         let before = melting.body.timings();
@@ -163,7 +183,8 @@ fn a_static_frame_has_no_times() {
 
 #[test]
 fn timings_can_be_off() {
-    for gpu in timed().into_iter().chain([gpu()]) {
+    let devices = devices();
+    for gpu in devices.all() {
         let mut melting = Melting::new(gpu);
         melting.run(MOVING, &[]);
         assert!(melting.body.timings().is_some());
@@ -177,15 +198,16 @@ fn timings_can_be_off() {
     }
     let model = creature();
     let descriptor = BodyDescriptor::new(&model.mesh, &model.atlas);
-    let mut plain = Melting::new(gpu());
-    plain.body = gpu().translume.create_body(&gpu().device, &descriptor).unwrap();
-    plain.run(MOVING, &[]);
-    assert_eq!(plain.body.timings(), None, "off by default");
+    let mut unasked = Melting::new(&devices.plain);
+    unasked.body = devices.plain.translume.create_body(&devices.plain.device, &descriptor).unwrap();
+    unasked.run(MOVING, &[]);
+    assert_eq!(unasked.body.timings(), None, "off by default");
 }
 
 #[test]
 fn without_timestamps_the_frame_is_timed_as_a_whole() {
-    let mut melting = Melting::new(gpu());
+    let devices = devices();
+    let mut melting = Melting::new(&devices.plain);
     for _ in 0..3 {
         let wall = melting.run(MOVING, &[lamp(0.0, true)]);
         let timings = melting.body.timings().unwrap();
@@ -197,7 +219,8 @@ fn without_timestamps_the_frame_is_timed_as_a_whole() {
 /// Encoders that are submitted late, in another order, or never.
 #[test]
 fn what_is_not_submitted_does_no_harm() {
-    for gpu in timed().into_iter().chain([gpu()]) {
+    let devices = devices();
+    for gpu in devices.all() {
         let mut melting = Melting::new(gpu);
         let mut ten: Vec<_> = (0..10)
             .map(|_| {
