@@ -32,7 +32,7 @@ impl Picture {
     }
 
     pub fn prepare(&mut self, gpu: &Gpu, body: &Body, camera: &Camera) {
-        self.view.prepare(&gpu.device, &gpu.queue, body, camera, Gloss::Rough(0.35));
+        self.view.prepare(&gpu.device, &gpu.queue, body, camera, Gloss::None);
     }
 
     pub fn draw(&self, encoder: &mut wgpu::CommandEncoder) {
