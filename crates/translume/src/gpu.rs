@@ -146,10 +146,9 @@ impl<'a> Pass<'a> {
         stage: Stage,
         recording: &'a mut Recording<'_>,
     ) -> Self {
-        let pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
-            label: Some(stage.name()),
-            timestamp_writes: recording.compute_pass(stage),
-        });
+        let timestamp_writes = recording.compute_pass(encoder, stage);
+        let label = Some(stage.name());
+        let pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label, timestamp_writes });
         Self { pass, work: &mut recording.work }
     }
 

@@ -12,8 +12,8 @@ use std::time::{Duration, Instant};
 const STAGES: usize = Stage::ALL.len();
 /// Recordings in flight that are timed: hosts keep two or three frames in flight.
 const SLOTS: usize = 4;
-/// The beginning and the end of every stage.
-const QUERIES: usize = 2 * STAGES;
+/// One before the first pass, and beginning and end of every stage.
+const QUERIES: usize = 1 + 2 * STAGES;
 
 /// Where a duration comes from.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -33,11 +33,11 @@ pub struct FrameTimings {
     pub frame: u64,
     /// What measured it.
     pub clock: Clock,
-    /// From the beginning of the first stage to the end of the last, with what lies between them. Of a frame encoded in several
-    /// parts, the sum over the parts by the GPU's clock, and the longest by the wall clock.
+    /// From the beginning of the first stage to the end of the last. Of a frame encoded in several parts, the sum over the parts by
+    /// the GPU's clock, and the longest by the wall clock.
     pub total: Duration,
-    /// In the order of [`Stage::ALL`]; `None` for a stage that had nothing to do, and for all by the wall clock. Of a stage of several
-    /// passes, from the beginning of the first to the end of the last.
+    /// From the end of the stage before to the end of this one, so that they add up to `total`; in the order of [`Stage::ALL`]. `None`
+    /// for a stage that had nothing to do, and for all by the wall clock.
     pub stages: [Option<Duration>; STAGES],
 }
 
@@ -178,37 +178,63 @@ impl Slot {
     }
 }
 
-/// From ticks, a beginning and an end for each stage that ran, to durations. `None` where the driver wrote no timestamps, which then
-/// are 0 (some resolve them too early), or set the clock back.
+/// From ticks to durations. `None` where the driver wrote no timestamps, which then are 0 (some resolve them too early), or set the
+/// clock back.
 fn evaluate(ticks: &[u64; QUERIES], ran: StageSet, period: f32, frame: u64) -> Option<FrameTimings> {
-    let duration = |begin: u64, end: u64| {
-        let ticks = end.checked_sub(begin).filter(|_| begin > 0)?;
-        Some(Duration::from_nanos((ticks as f64 * f64::from(period)).round() as u64))
-    };
+    let duration = |ticks: u64| Duration::from_nanos((ticks as f64 * f64::from(period)).round() as u64);
+    // Metal leaves that of an empty pass at 0.
+    let start = if ticks[0] > 0 { ticks[0] } else { ticks[1] };
     let mut timings = FrameTimings { frame, clock: Clock::Gpu, ..Default::default() };
-    let (mut first, mut last) = (u64::MAX, 0);
+    let mut last = start;
     let stages = Stage::ALL.into_iter().filter(|stage| ran.contains(*stage));
-    for (stage, pair) in stages.zip(ticks.chunks_exact(2)) {
-        timings.stages[stage as usize] = Some(duration(pair[0], pair[1])?);
-        (first, last) = (first.min(pair[0]), last.max(pair[1]));
+    for (stage, pair) in stages.zip(ticks[1..].chunks_exact(2)) {
+        let end = pair[1];
+        if start == 0 || end < start {
+            return None;
+        }
+        // Where passes overlap, a later one may end first.
+        timings.stages[stage as usize] = Some(duration(end.saturating_sub(last)));
+        last = last.max(end);
     }
-    timings.total = duration(first, last)?;
+    timings.total = duration(last - start);
     Some(timings)
 }
 
-/// Timestamps of a recording: two for each stage that ran, in the order in which stages run.
+/// Timestamps of a recording: the start, and two for each stage that ran, in the order in which stages run.
 pub(crate) struct Marks {
     slot: Arc<Slot>,
     ran: StageSet,
 }
 
 impl Marks {
-    /// The queries of the stage's next pass: the first pass marks the beginning, and each the end, so that the last one's stays.
-    fn pass(&mut self, stage: Stage) -> (&wgpu::QuerySet, Option<u32>, Option<u32>) {
+    /// An empty pass before the first.
+    ///
+    /// Mesa's software driver (22.3) takes a timestamp only when the next one is asked for. So those at the beginnings of passes come at
+    /// their ends, and are asked for only to have the ones before them taken: at the end of the stage before, and here at the start.
+    fn start(&self, encoder: &mut wgpu::CommandEncoder) {
+        encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+            label: Some("start"),
+            timestamp_writes: Some(wgpu::ComputePassTimestampWrites {
+                query_set: &self.slot.queries,
+                beginning_of_pass_write_index: Some(0),
+                end_of_pass_write_index: None,
+            }),
+        });
+    }
+
+    /// The queries of the stage's next pass. Each pass marks the end of its stage, so that the last one's mark stays.
+    fn pass(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        stage: Stage,
+    ) -> (&wgpu::QuerySet, Option<u32>, Option<u32>) {
+        if self.ran.is_empty() {
+            self.start(encoder);
+        }
         let is_first = !self.ran.contains(stage);
         self.ran.set(stage, true);
-        let begin = 2 * (self.ran.len() - 1);
-        (&self.slot.queries, is_first.then_some(begin), Some(begin + 1))
+        let end = 2 * self.ran.len();
+        (&self.slot.queries, is_first.then_some(end - 1), Some(end))
     }
 }
 
@@ -227,9 +253,13 @@ impl<'a> Recording<'a> {
         Self { work: Work::default(), timer, marks, start: if by_wall { now() } else { None } }
     }
 
-    pub fn compute_pass(&mut self, stage: Stage) -> Option<wgpu::ComputePassTimestampWrites<'_>> {
+    pub fn compute_pass(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        stage: Stage,
+    ) -> Option<wgpu::ComputePassTimestampWrites<'_>> {
         let (query_set, beginning_of_pass_write_index, end_of_pass_write_index) =
-            self.marks.as_mut()?.pass(stage);
+            self.marks.as_mut()?.pass(encoder, stage);
         Some(wgpu::ComputePassTimestampWrites {
             query_set,
             beginning_of_pass_write_index,
@@ -237,9 +267,13 @@ impl<'a> Recording<'a> {
         })
     }
 
-    pub fn render_pass(&mut self, stage: Stage) -> Option<wgpu::RenderPassTimestampWrites<'_>> {
+    pub fn render_pass(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        stage: Stage,
+    ) -> Option<wgpu::RenderPassTimestampWrites<'_>> {
         let (query_set, beginning_of_pass_write_index, end_of_pass_write_index) =
-            self.marks.as_mut()?.pass(stage);
+            self.marks.as_mut()?.pass(encoder, stage);
         Some(wgpu::RenderPassTimestampWrites {
             query_set,
             beginning_of_pass_write_index,
@@ -251,7 +285,7 @@ impl<'a> Recording<'a> {
     pub fn end(self, encoder: &mut wgpu::CommandEncoder) -> Work {
         let recorded = match (self.marks, self.start) {
             (Some(marks), _) if !marks.ran.is_empty() => {
-                let (slot, count) = (&*marks.slot, 2 * marks.ran.len());
+                let (slot, count) = (&*marks.slot, 1 + 2 * marks.ran.len());
                 encoder.resolve_query_set(&slot.queries, 0..count, &slot.resolved, 0);
                 let size = u64::from(count) * u64::from(wgpu::QUERY_SIZE);
                 encoder.copy_buffer_to_buffer(&slot.resolved, 0, &slot.read_back, 0, size);
@@ -294,26 +328,34 @@ mod tests {
     #[test]
     fn stages_get_their_own_ticks() {
         let ran = ran(&[Stage::Deform, Stage::Gather, Stage::Resolve]);
-        let timings = evaluate(&ticks(&[100, 130, 140, 240, 250, 251]), ran, 2.0, 5).unwrap();
-        let ns = |stage| timings.stage(stage).map(|time| time.as_nanos());
-        assert_eq!(Stage::ALL.map(ns), [Some(60), None, None, Some(200), None, None, Some(2)]);
-        assert_eq!((timings.total.as_nanos(), timings.frame, timings.clock), (302, 5, Clock::Gpu));
+        let at = |all| evaluate(&ticks(all), ran, 2.0, 5).unwrap();
+        let ns = |timings: FrameTimings| timings.stages.map(|time| Some(time?.as_nanos()));
+        let timings = at(&[100, 104, 130, 135, 240, 240, 241]);
+        assert_eq!(ns(timings), [Some(60), None, None, Some(220), None, None, Some(2)]);
+        assert_eq!((timings.total.as_nanos(), timings.frame, timings.clock), (282, 5, Clock::Gpu));
+        assert_eq!(timings.stage(Stage::Gather), Some(Duration::from_nanos(220)));
+        let without_start = at(&[0, 104, 130, 135, 240, 240, 241]);
+        assert_eq!(ns(without_start), [Some(52), None, None, Some(220), None, None, Some(2)]);
+        let overlapping = at(&[100, 104, 150, 120, 130, 140, 160]);
+        assert_eq!(ns(overlapping), [Some(100), None, None, Some(0), None, None, Some(20)]);
+        assert_eq!(overlapping.total.as_nanos(), 120);
     }
 
     #[test]
     fn timestamps_that_cannot_be_are_no_times() {
         let both = ran(&[Stage::Gather, Stage::Scatter]);
-        assert!(evaluate(&ticks(&[5, 6, 7, 8]), both, NS, 1).is_some());
-        for broken in [[0; 4], [5, 6, 0, 0], [0, 6, 7, 8], [5, 0, 7, 8], [6, 5, 7, 8]] {
+        assert!(evaluate(&ticks(&[5, 6, 7, 7, 8]), both, NS, 1).is_some());
+        for broken in
+            [[0; 5], [5, 6, 0, 0, 0], [0, 0, 7, 7, 8], [5, 6, 0, 7, 8], [5, 6, 7, 7, 0], [9, 9, 7, 7, 8]]
+        {
             assert_eq!(evaluate(&ticks(&broken), both, NS, 1), None, "{broken:?}");
         }
-        assert_eq!(evaluate(&ticks(&[]), ran(&[]), NS, 1), None, "nothing ran");
     }
 
     #[test]
     fn parts_of_a_frame_are_joined_and_old_frames_dropped() {
         let part = |frame, stage: Stage, length: u64| {
-            evaluate(&ticks(&[10, 10 + length]), ran(&[stage]), NS, frame).unwrap()
+            evaluate(&ticks(&[10, 10, 10 + length]), ran(&[stage]), NS, frame).unwrap()
         };
         let newest = Newest::default();
         assert_eq!(newest.get(), None);

@@ -4,7 +4,7 @@ use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
 use std::time::{Duration, Instant};
 use translume::{
     AmbientLight, Body, BodyDescriptor, Clock, Deformation, Frame, FrameTimings, Light, Lighting, Medium,
-    PointLight, ShadowOptions, Stage, Work, wgpu,
+    Method, PointLight, ShadowOptions, Stage, Work, wgpu,
 };
 use translume_tests::{Check, Gpu, at_least, at_most, creature, holds, notices};
 
@@ -100,10 +100,13 @@ fn fits(timings: &FrameTimings, wall: Duration) -> Check {
     let sum: Duration = stages().sum();
     let shortest = stages().min().unwrap_or_default();
     at_least("timings: ns of the shortest stage", shortest.as_nanos() as f64, 1.0)?;
-    // Each stage and the whole are rounded to nanoseconds; measured 0.963.
-    let rounded = sum.saturating_sub(Duration::from_nanos(8));
-    at_most("timings: stages over frame", rounded.div_duration_f64(timings.total), 1.0)?;
-    // Measured 0.92 to 0.95 on lavapipe; a fast card waits longer for its orders than it works.
+    // Each stage and the whole are rounded to nanoseconds.
+    at_most(
+        "timings: ns that the stages do not add up to",
+        sum.abs_diff(timings.total).as_nanos() as f64,
+        8.0,
+    )?;
+    // Measured 0.88 to 0.98 on lavapipe; a fast card waits longer for its orders than it works.
     at_most("timings: frame over wall time", timings.total.div_duration_f64(wall), 1.0)
 }
 
@@ -125,8 +128,28 @@ fn times_fit_into_the_frame() {
         };
         notices(fits(&scaled(1000.0), wall));
         notices(fits(&scaled(1e-12), wall));
-        let sum: Duration = timings.stages.into_iter().flatten().sum();
-        notices(fits(&FrameTimings { total: sum / 2, ..timings }, wall));
+        notices(fits(&FrameTimings { total: timings.total / 2, ..timings }, wall));
+    }
+}
+
+/// A stage gets its own time, wherever in the frame it stands: all pairs of 2,800 texels take far longer than 4,096 pixels to copy.
+#[test]
+fn the_scatter_takes_longer_than_the_resolve() {
+    let devices = devices();
+    let Some(gpu) = &devices.timed else { return };
+    let mut melting = Melting::new(gpu);
+    melting.run(MOVING, &[lamp(0.0, true)]);
+    melting.body.set_method(Method::AllPairs).unwrap();
+    for step in [STILL, MOVING] {
+        melting.run(step, &[lamp(0.0, true)]);
+        let timings = melting.body.timings().unwrap();
+        let [scatter, resolve] = [Stage::Scatter, Stage::Resolve].map(|stage| timings.stage(stage).unwrap());
+        let ratio = |a: Duration, b: Duration| {
+            at_least("timings: all pairs over resolve", a.div_duration_f64(b), 5.0)
+        };
+        // Measured on lavapipe: 1,400. A driver that takes timestamps late gives the scatter's time to a neighbour, 1e-3 and less.
+        holds(ratio(scatter, resolve));
+        notices(ratio(resolve, scatter));
     }
 }
 

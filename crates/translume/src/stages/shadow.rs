@@ -120,9 +120,10 @@ impl Shadow {
             if here.peek().is_none() {
                 continue;
             }
+            let timestamp_writes = recording.render_pass(encoder, stage);
             let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
                 label: Some(stage.name()),
-                timestamp_writes: recording.render_pass(stage),
+                timestamp_writes,
                 depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
                     view: layer,
                     depth_ops: Some(wgpu::Operations {
