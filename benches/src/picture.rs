@@ -36,6 +36,9 @@ impl Picture {
     }
 
     pub fn draw(&self, encoder: &mut wgpu::CommandEncoder) {
+        if let Some(clock) = &self.clock {
+            clock.start(encoder);
+        }
         {
             let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
                 label: Some("composite"),
@@ -101,7 +104,7 @@ impl PassClock {
             let label = Some("timestamps");
             gpu.device.create_buffer(&wgpu::BufferDescriptor {
                 label,
-                size: 16,
+                size: 24,
                 usage,
                 mapped_at_creation: false,
             })
@@ -110,7 +113,7 @@ impl PassClock {
             queries: gpu.device.create_query_set(&wgpu::QuerySetDescriptor {
                 label: Some("composite"),
                 ty: wgpu::QueryType::Timestamp,
-                count: 2,
+                count: 3,
             }),
             resolved: buffer(wgpu::BufferUsages::QUERY_RESOLVE | wgpu::BufferUsages::COPY_SRC),
             read_back: buffer(wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ),
@@ -119,17 +122,29 @@ impl PassClock {
         }
     }
 
+    /// An empty pass whose timestamp Mesa's software driver takes when that of the next pass begins, as the library's stages have it.
+    fn start(&self, encoder: &mut wgpu::CommandEncoder) {
+        encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+            label: Some("start"),
+            timestamp_writes: Some(wgpu::ComputePassTimestampWrites {
+                query_set: &self.queries,
+                beginning_of_pass_write_index: Some(0),
+                end_of_pass_write_index: None,
+            }),
+        });
+    }
+
     fn writes(&self) -> wgpu::RenderPassTimestampWrites<'_> {
         wgpu::RenderPassTimestampWrites {
             query_set: &self.queries,
-            beginning_of_pass_write_index: Some(0),
-            end_of_pass_write_index: Some(1),
+            beginning_of_pass_write_index: Some(1),
+            end_of_pass_write_index: Some(2),
         }
     }
 
     fn resolve(&self, encoder: &mut wgpu::CommandEncoder) {
-        encoder.resolve_query_set(&self.queries, 0..2, &self.resolved, 0);
-        encoder.copy_buffer_to_buffer(&self.resolved, 0, &self.read_back, 0, 16);
+        encoder.resolve_query_set(&self.queries, 0..3, &self.resolved, 0);
+        encoder.copy_buffer_to_buffer(&self.resolved, 0, &self.read_back, 0, 24);
         let is_mapped = Arc::clone(&self.is_mapped);
         encoder.map_buffer_on_submit(&self.read_back, wgpu::MapMode::Read, .., move |mapped| {
             is_mapped.store(mapped.is_ok(), Ordering::Release);
@@ -141,9 +156,11 @@ impl PassClock {
             return None;
         }
         let ticks = self.read_back.get_mapped_range(..).ok();
-        let ticks: Option<[u64; 2]> = ticks.map(|bytes| bytemuck::pod_read_unaligned(&bytes));
+        let ticks: Option<[u64; 3]> = ticks.map(|bytes| bytemuck::pod_read_unaligned(&bytes));
         self.read_back.unmap();
-        let [begin, end] = ticks?;
+        let [start, begin, end] = ticks?;
+        // Metal leaves that of an empty pass at 0.
+        let begin = if start > 0 { start } else { begin };
         let ticks = end.checked_sub(begin).filter(|_| begin > 0)?;
         Some(Duration::from_nanos((ticks as f64 * f64::from(self.period)) as u64))
     }
