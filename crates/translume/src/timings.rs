@@ -4,9 +4,6 @@
 //! or its encoder was dropped; a host that submits late or never only goes without timings. Timestamps stand at the bounds of passes
 //! alone, as WebGPU's `timestamp-query` has them.
 
-#[cfg(test)]
-mod tests;
-
 use crate::Work;
 use crate::stages::{Stage, StageSet};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -308,3 +305,6 @@ impl<'a> Recording<'a> {
 fn now() -> Option<Instant> {
     (!cfg!(all(target_family = "wasm", target_os = "unknown"))).then(Instant::now)
 }
+
+#[cfg(test)]
+mod tests;
