@@ -5,7 +5,9 @@ use translume::{Translume, wgpu};
 
 /// A device, its queue, the pipelines, and the name of the adapter behind them.
 pub struct Gpu {
-    /// Created with WebGPU's default limits and no feature: what translume promises to need.
+    /// What the device came from.
+    pub instance: wgpu::Instance,
+    /// Created with WebGPU's default limits and no feature, what translume promises to need, unless asked for otherwise.
     pub device: wgpu::Device,
     /// The device's queue.
     pub queue: wgpu::Queue,
@@ -18,11 +20,16 @@ pub struct Gpu {
 /// The one device of this test binary. `WGPU_ADAPTER_NAME` and `WGPU_BACKEND` choose the adapter.
 pub fn gpu() -> &'static Gpu {
     static GPU: OnceLock<Gpu> = OnceLock::new();
-    GPU.get_or_init(Gpu::new)
+    GPU.get_or_init(|| Gpu::with(wgpu::Features::empty()))
 }
 
 impl Gpu {
-    fn new() -> Self {
+    /// A device of its own, with those of the features that the adapter has.
+    ///
+    /// # Panics
+    /// If there is no adapter, or no device with WebGPU's default limits.
+    #[must_use]
+    pub fn with(features: wgpu::Features) -> Self {
         let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle().with_env());
         let adapter = pollster::block_on(wgpu::util::initialize_adapter_from_env(&instance, None))
             .or_else(|_| {
@@ -33,6 +40,7 @@ impl Gpu {
         let adapter_name = format!("{} ({}, {})", info.name, info.backend, info.driver_info);
         let descriptor = wgpu::DeviceDescriptor {
             label: Some("tests"),
+            required_features: adapter.features() & features,
             required_limits: wgpu::Limits::default(),
             ..Default::default()
         };
@@ -43,6 +51,6 @@ impl Gpu {
         let translume =
             Translume::new(&device).unwrap_or_else(|error| panic!("[{adapter_name}] no pipelines: {error}"));
         eprintln!("adapter: {adapter_name}");
-        Self { device, queue, translume, adapter_name }
+        Self { instance, device, queue, translume, adapter_name }
     }
 }

@@ -13,6 +13,7 @@ Examples:
   translume render teapot --env sky.exr -o outdoors.png                light from all around
   translume render bunny.obj --into egg --frames 48 -o egg.png         whatever is closed melts
   translume render --scene scene.json -o scene.exr                     linear radiance, full float
+  translume render creature --frames 9 --timings -o morph.png          and how long each stage took
   translume inspect bunny.obj --json
   translume inspect creature teapot bunny.obj --table                  a line for each
   translume report --suite gather -o report                            error beside time of every kind of light
@@ -140,6 +141,9 @@ pub struct Render {
     /// where there is none.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=2000))]
     pub frames: u32,
+    /// Print how long each stage took on the GPU; without timestamps the wall time of whole frames.
+    #[arg(long)]
+    pub timings: bool,
     /// Picture to write, .png or .exr.
     #[arg(short, long, value_name = "FILE")]
     pub output: PathBuf,

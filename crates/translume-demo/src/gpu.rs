@@ -27,6 +27,8 @@ impl Gpu {
         let name = format!("{} ({}, {})", info.name, info.backend, info.driver_info);
         let descriptor = wgpu::DeviceDescriptor {
             label: Some("translume"),
+            // For timings.
+            required_features: adapter.features() & wgpu::Features::TIMESTAMP_QUERY,
             required_limits: adapter.limits(),
             ..Default::default()
         };

@@ -14,6 +14,7 @@ mod render;
 mod report;
 mod scene;
 mod studio;
+mod timings;
 
 use clap::Parser as _;
 use std::process::ExitCode;

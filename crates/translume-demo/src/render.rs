@@ -9,6 +9,7 @@ use crate::motion::{Motion, Wish};
 use crate::picture::{Develop, Format, Output};
 use crate::scene::{Scene, SceneCamera, SceneLight};
 use crate::studio::Studio;
+use crate::timings::table;
 use crate::{model, progress};
 use std::path::Path;
 use std::time::Instant;
@@ -83,6 +84,7 @@ pub fn run(arguments: &Render) -> Result<(), Error> {
         Format::Exr => 1,
     });
     let mut studio = Studio::new(gpu, &descriptor, camera.width, camera.height, samples)?;
+    studio.set_timings(arguments.timings);
     let camera = subject.look(&camera);
     let develop = match output.format {
         Format::Png => Develop::Display { exposure: arguments.exposure },
@@ -91,7 +93,7 @@ pub fn run(arguments: &Render) -> Result<(), Error> {
     let bar = progress::bar("render");
     bar.set_length(arguments.frames.into());
     let start = Instant::now();
-    let mut frames = Vec::new();
+    let (mut frames, mut timings) = (Vec::new(), Vec::new());
     for k in 0..arguments.frames {
         let moment = motion.moment(k);
         let frame = Frame {
@@ -103,11 +105,15 @@ pub fn run(arguments: &Render) -> Result<(), Error> {
             view: Some(View { camera, pixels: studio.pixels() }),
         };
         frames.push(studio.take(&frame, &camera, setup.gloss, develop)?);
+        timings.extend(studio.timings());
         bar.inc(1);
     }
     bar.finish_and_clear();
     let rendered = start.elapsed().as_secs_f32();
     output.write(&frames)?;
+    if arguments.timings {
+        progress::print(&table(&timings));
+    }
     progress::tell(&format!(
         "{}: {} triangles, 1 unit = {} mm, {} texels in {} charts; unwrapped in {unwrapped:.2} s, rendered in {rendered:.2} s on {}",
         mesh.name,

@@ -4,8 +4,8 @@ use crate::error::Error;
 use crate::gpu::Gpu;
 use crate::picture::{Develop, Picture};
 use translume::{
-    Body, BodyDescriptor, Camera, Composite, CompositeTarget, CompositeView, Frame, Gloss, Translume,
-    readback, wgpu,
+    Body, BodyDescriptor, Camera, Composite, CompositeTarget, CompositeView, Frame, FrameTimings, Gloss,
+    Translume, readback, wgpu,
 };
 
 /// A body in front of a camera, off screen.
@@ -101,6 +101,16 @@ impl Studio {
     /// Width and height of what is drawn.
     pub fn pixels(&self) -> [u32; 2] {
         [self.colour.width(), self.colour.height()]
+    }
+
+    /// Whether further frames are timed.
+    pub fn set_timings(&mut self, on: bool) {
+        self.body.set_timings(on);
+    }
+
+    /// How long the last frame took that had anything to do.
+    pub fn timings(&self) -> Option<FrameTimings> {
+        self.body.timings()
     }
 
     /// The adapter's name, for messages.

@@ -25,6 +25,7 @@ use crate::stages::shadow::DepthMaps;
 use crate::stages::visibility::SkyMemory;
 use crate::stages::{Stage, StageSet, Stages};
 use crate::standing::Standing;
+use crate::timings::Timer;
 use crate::variation::{VERTEX_MARK, Variation};
 use crate::{Error, Light, Medium, Profile, ShadowOptions};
 use glam::{Mat4, Vec3};
@@ -87,6 +88,9 @@ pub struct Body {
     surface_stale: bool,
     shadows_stale: bool,
     never_prepared: bool,
+    is_timed: bool,
+    /// Made by the first frame that is timed.
+    timer: Option<Timer>,
 
     exitance: wgpu::Texture,
     exitance_view: wgpu::TextureView,
@@ -164,6 +168,8 @@ impl Body {
             surface_stale: true,
             shadows_stale: false,
             never_prepared: true,
+            is_timed: false,
+            timer: None,
             exitance,
             exitance_view,
             depth_maps,
@@ -255,6 +261,9 @@ impl Body {
         self.shadows_stale = false;
         self.place_evaluation(queue, frame, &corners);
         self.refresh_kernel(device, queue, frame::diagonal(&corners));
+        if self.is_timed {
+            self.timer.get_or_insert_with(|| Timer::new(device, queue)).next_frame();
+        }
         Ok(())
     }
 

@@ -1,5 +1,7 @@
 //! Short words for long wgpu descriptors.
 
+use crate::stages::Stage;
+use crate::timings::Recording;
 use std::borrow::Cow;
 use std::sync::OnceLock;
 use wgpu::BindingType;
@@ -202,17 +204,22 @@ pub struct Work {
     pub dispatches: u32,
 }
 
-/// A compute pass that counts.
+/// A compute pass that counts and is timed.
 pub(crate) struct Pass<'a> {
     pass: wgpu::ComputePass<'a>,
     work: &'a mut Work,
 }
 
 impl<'a> Pass<'a> {
-    pub fn begin(encoder: &'a mut wgpu::CommandEncoder, label: &str, work: &'a mut Work) -> Self {
-        let pass = encoder
-            .begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some(label), timestamp_writes: None });
-        Self { pass, work }
+    pub fn begin(
+        encoder: &'a mut wgpu::CommandEncoder,
+        stage: Stage,
+        recording: &'a mut Recording<'_>,
+    ) -> Self {
+        let timestamp_writes = recording.compute_pass(encoder, stage);
+        let label = Some(stage.name());
+        let pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label, timestamp_writes });
+        Self { pass, work: &mut recording.work }
     }
 
     pub fn set_pipeline(&mut self, pipeline: &wgpu::ComputePipeline) {

@@ -57,6 +57,7 @@ mod shadow_options;
 mod shadow_view;
 mod stages;
 mod standing;
+mod timings;
 mod variation;
 
 pub use area_light::{RectangleLight, SphereLight};
@@ -78,6 +79,7 @@ pub use stages::composite::{Composite, CompositeTarget, CompositeView, Gloss};
 pub use stages::scatter::Method;
 pub use stages::shadow::ShadowView;
 pub use stages::{Stage, StageSet};
+pub use timings::{Clock, FrameTimings};
 pub use variation::Variation;
 
 use std::sync::Arc;

@@ -24,5 +24,6 @@ mod scatter;
 mod shadow;
 mod sky;
 mod stages;
+mod timings;
 mod variation;
 mod work;

@@ -143,6 +143,23 @@ fn a_morph_becomes_an_animation() {
     assert!(frames[0] != frames[1] && frames[1] != frames[2], "something moves");
 }
 
+#[test]
+fn stages_are_timed_on_request() {
+    let desk = Desk::new();
+    let mesh = desk.file("ok.obj", TETRAHEDRON);
+    let print = |more: &[&str]| {
+        let mut all = vec![mesh.as_str(), "--frames", "3", "--size", "16", "--atlas", "32"];
+        all.extend_from_slice(more);
+        let output = render(&desk, &all);
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        String::from_utf8_lossy(&output.stdout).into_owned()
+    };
+    let table = print(&["--timings"]);
+    let whole = if table.contains("wall clock") { "frame" } else { "all" };
+    assert!(table.contains(&format!("| {whole} | 3 | ")), "a line for the whole of three frames: {table}");
+    assert_eq!(print(&[]), "");
+}
+
 /// Bytes of every frame, and how long the last is shown.
 fn read_png(path: &Path) -> (Vec<Vec<u8>>, f32) {
     let file = std::io::BufReader::new(std::fs::File::open(path).unwrap());

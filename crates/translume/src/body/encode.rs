@@ -4,6 +4,7 @@ use super::Body;
 use crate::gpu::Pass;
 use crate::stages::Stage;
 use crate::stages::shadow::ShadowView;
+use crate::timings::{FrameTimings, Recording};
 use crate::{Method, Work};
 use glam::{Mat4, Vec3};
 
@@ -43,6 +44,27 @@ impl Body {
         self.record(encoder, Stage::Resolve, &mut casters)
     }
 
+    /// Turns timings on or off; off by default. Takes effect at the next [`prepare`](Self::prepare).
+    ///
+    /// Each stage is timed where the device has [`wgpu::Features::TIMESTAMP_QUERY`], else the frame as a whole by the wall clock
+    /// ([`Clock`](crate::Clock)).
+    pub fn set_timings(&mut self, on: bool) {
+        self.is_timed = on;
+        if !on {
+            self.timer = None;
+        }
+    }
+
+    /// How long the newest frame took of those that have ended; never blocks. `None` before the first, and while timings are off.
+    ///
+    /// Times arrive while the host polls the device or submits, some frames late. A frame that records nothing has none, so that this
+    /// stays what it was: see [`FrameTimings::frame`]. Nor has a frame while four before it are in flight or in encoders that were not
+    /// submitted, nor where the driver returns no timestamps although it has the feature.
+    #[must_use]
+    pub fn timings(&self) -> Option<FrameTimings> {
+        self.timer.as_ref()?.newest()
+    }
+
     fn record(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
@@ -50,11 +72,12 @@ impl Body {
         casters: &mut dyn FnMut(&mut wgpu::RenderPass<'_>, usize),
     ) -> Work {
         let pending = self.pending.take_through(last);
-        let (mut work, stages) = (Work::default(), &self.stages);
+        let at_points = self.points().is_some();
+        let (mut recording, stages) = (Recording::begin(self.timer.as_mut()), &self.stages);
         let (texels, indices) = (self.extent.texels, self.extent.triangles * 3);
         if pending.contains(Stage::Deform) {
             stages.deform.encode(
-                &mut Pass::begin(encoder, "deform", &mut work),
+                &mut Pass::begin(encoder, Stage::Deform, &mut recording),
                 &self.deform_groups,
                 self.extent.vertices,
                 self.extent.influences_per_vertex > 0,
@@ -71,18 +94,18 @@ impl Body {
                 sky,
                 &self.buffers,
                 extent,
-                (&mut work, casters),
+                (&mut recording, casters),
             );
         }
         if pending.contains(Stage::Shadow) {
             let mut casters = |pass: &mut wgpu::RenderPass<'_>, slot| casters(pass, first_view + slot);
-            let views = (0, self.views.as_slice());
-            stages.shadow.encode(encoder, &self.depth_maps, views, &self.buffers, indices, &mut casters);
-            work.draws += self.views.len() as u32;
+            let (maps, views) = (&self.depth_maps, (0, self.views.as_slice()));
+            let (recording, body) = ((Stage::Shadow, &mut recording), (&self.buffers, indices));
+            stages.shadow.encode(encoder, recording, maps, views, body, &mut casters);
         }
         if pending.contains(Stage::Gather) {
             stages.gather.encode(
-                &mut Pass::begin(encoder, "gather", &mut work),
+                &mut Pass::begin(encoder, Stage::Gather, &mut recording),
                 &self.gather_group,
                 self.kinds,
                 texels,
@@ -94,13 +117,13 @@ impl Body {
                 encoder.copy_buffer_to_buffer(irradiance, 0, &self.buffers.irradiance, 0, size);
             }
             stages.cluster.encode(
-                &mut Pass::begin(encoder, "cluster", &mut work),
+                &mut Pass::begin(encoder, Stage::Cluster, &mut recording),
                 &self.cluster_group,
                 &self.tree,
             );
         }
         if pending.contains(Stage::Scatter) {
-            let mut pass = Pass::begin(encoder, "scatter", &mut work);
+            let mut pass = Pass::begin(encoder, Stage::Scatter, &mut recording);
             match (&self.dual, self.method.resolved()) {
                 (Some(memory), Method::Dual { .. }) => {
                     stages.scatter.dual.encode(&mut pass, memory, &self.tree, self.extent.vertices);
@@ -108,13 +131,13 @@ impl Body {
                 _ => stages.scatter.encode(&mut pass, &self.scatter_group, (self.method, self.kind), texels),
             }
         }
-        if pending.contains(Stage::Resolve) && self.points().is_none() {
+        if pending.contains(Stage::Resolve) && !at_points {
             stages.resolve.encode(
-                &mut Pass::begin(encoder, "resolve", &mut work),
+                &mut Pass::begin(encoder, Stage::Resolve, &mut recording),
                 &self.resolve_group,
                 self.extent.atlas_size,
             );
         }
-        work
+        recording.end(encoder)
     }
 }

@@ -40,6 +40,20 @@ impl Stage {
         Self::Scatter,
         Self::Resolve,
     ];
+
+    /// The name of the stage's file.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Deform => "deform",
+            Self::Visibility => "visibility",
+            Self::Shadow => "shadow",
+            Self::Gather => "gather",
+            Self::Cluster => "cluster",
+            Self::Scatter => "scatter",
+            Self::Resolve => "resolve",
+        }
+    }
 }
 
 /// A set of stages.
@@ -68,6 +82,10 @@ impl StageSet {
     #[must_use]
     pub fn is_empty(self) -> bool {
         self.0 == 0
+    }
+
+    pub(crate) fn len(self) -> u32 {
+        self.0.count_ones()
     }
 
     pub(crate) fn set(&mut self, stage: Stage, member: bool) {

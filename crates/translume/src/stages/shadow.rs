@@ -6,6 +6,8 @@
 use crate::buffers::Buffers;
 use crate::gpu::{self, UNIFORM_ARRAY, UNIFORM_STRIDE};
 use crate::shadow_view::View;
+use crate::stages::Stage;
+use crate::timings::Recording;
 use glam::Mat4;
 
 pub(crate) struct Shadow {
@@ -103,14 +105,14 @@ impl Shadow {
         DepthMaps { texture, sampled, layers, uniforms, group }
     }
 
-    /// Draws the views, whose uniforms begin at slot `first`: a pass for each layer, a draw for each view.
+    /// Draws the views, whose uniforms begin at slot `first`, for a stage: a pass for each layer, a draw for each view.
     pub fn encode(
         &self,
         encoder: &mut wgpu::CommandEncoder,
+        (stage, recording): (Stage, &mut Recording<'_>),
         maps: &DepthMaps,
         (first, views): (usize, &[View]),
-        buffers: &Buffers,
-        indices: u32,
+        (buffers, indices): (&Buffers, u32),
         casters: DrawCasters<'_>,
     ) {
         for (number, layer) in (0..).zip(&maps.layers) {
@@ -118,8 +120,10 @@ impl Shadow {
             if here.peek().is_none() {
                 continue;
             }
+            let timestamp_writes = recording.render_pass(encoder, stage);
             let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-                label: Some("shadow"),
+                label: Some(stage.name()),
+                timestamp_writes,
                 depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
                     view: layer,
                     depth_ops: Some(wgpu::Operations {
@@ -139,6 +143,7 @@ impl Shadow {
                 pass.set_vertex_buffer(0, buffers.positions.slice(..));
                 pass.set_index_buffer(buffers.triangles.slice(..), wgpu::IndexFormat::Uint32);
                 pass.draw_indexed(0..indices, 0, 0..1);
+                recording.work.draws += 1;
                 casters(&mut pass, slot);
             }
         }

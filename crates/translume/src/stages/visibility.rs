@@ -10,7 +10,9 @@ use crate::buffers::Buffers;
 use crate::gpu::{self, DEPTH_MAPS, Pass, READ, UNIFORM, UNIFORM_ARRAY, WRITE};
 use crate::layout::{DirectionLayout, DirectionsLayout};
 use crate::shadow_view::{Subject, Tile, View, sky_view};
+use crate::stages::Stage;
 use crate::stages::shadow::{DepthMaps, DrawCasters, Shadow};
+use crate::timings::Recording;
 use glam::{Vec3, Vec4};
 
 /// Directions that share a word of a texel.
@@ -182,13 +184,14 @@ impl Visibility {
         sky: &mut SkyMemory,
         buffers: &Buffers,
         (texels, indices): (u32, u32),
-        (work, casters): (&mut gpu::Work, DrawCasters<'_>),
+        (recording, casters): (&mut Recording<'_>, DrawCasters<'_>),
     ) {
         let Some(memory) = &sky.memory else { return };
         for (batch, views) in sky.views.chunks(PER_BATCH).enumerate() {
-            shadow.encode(encoder, &memory.maps, (batch * PER_BATCH, views), buffers, indices, casters);
-            work.draws += views.len() as u32;
-            let mut pass = Pass::begin(encoder, "visibility", work);
+            let (stage, views_from) = (Stage::Visibility, batch * PER_BATCH);
+            let body = (buffers, indices);
+            shadow.encode(encoder, (stage, recording), &memory.maps, (views_from, views), body, casters);
+            let mut pass = Pass::begin(encoder, stage, recording);
             pass.set_pipeline(&self.pipeline);
             for k in 0..views.len() / PER_WORD {
                 let slot = batch * (PER_BATCH / PER_WORD) + k;
