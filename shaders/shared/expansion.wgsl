@@ -36,6 +36,9 @@ struct Jet {
     second: vec3f,
 }
 
+// How much more a source that is long towards the receiver may send than a disc, in the logarithm.
+const STEEPEST: f32 = 0.7;
+
 // As `area_averaged_profile`, but blended in the logarithm: what is far enough to be shared looks much the same lying and facing.
 // Derivatives are those of the parabolas through neighbouring columns, blended, for the slope of the interpolated table jumps.
 fn profile_jet(table: KernelTable, texels: texture_2d<f32>, r2: f32, s2: f32, facing: f32) -> Jet {
@@ -50,7 +53,9 @@ fn profile_jet(table: KernelTable, texels: texture_2d<f32>, r2: f32, s2: f32, fa
         let facing_row = row + i32(table.rows);
         let lying = mix(textureLoad(texels, vec2i(at, row), 0).rgb, textureLoad(texels, vec2i(at, row + 1), 0).rgb, fy);
         let upright = mix(textureLoad(texels, vec2i(at, facing_row), 0).rgb, textureLoad(texels, vec2i(at, facing_row + 1), 0).rgb, fy);
-        v[k] = mix(lying, upright, facing);
+        // Beyond a disc that lies along the line no further than second order holds.
+        let slope = upright - lying;
+        v[k] = lying + facing * select(slope, max(slope, vec3f(-STEEPEST)), facing < 0.0);
     }
     const CELLS: f32 = R2_CELLS_PER_OCTAVE * 1.44269504;
     // By ln r².

@@ -18,7 +18,7 @@ struct Dual {
     // Level of the first receivers, which take over the root.
     start_level: u32,
     top_level: u32,
-    // Opening angle: accepted when source size + RECEIVER_WEIGHT·receiver size < theta·√(distance² + z_r²).
+    // Opening angle: accepted when source size² + (RECEIVER_WEIGHT·receiver size)² < theta²·(distance² + z_r²).
     theta_squared: f32,
     // The same for single texels, which have no size.
     leaf_theta_squared: f32,

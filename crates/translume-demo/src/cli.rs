@@ -80,7 +80,7 @@ pub struct Render {
     /// Where exitance is evaluated: texel, vertex, fragment (with dual), or auto for whichever is cheapest and loses nothing.
     #[arg(long, value_name = "PLACE", default_value = "texel")]
     pub evaluate: String,
-    /// For experts: opening angle of dual in place of a tolerance (0.01 is 0.75), or of tree (by default 0.4).
+    /// For experts: opening angle of dual in place of a tolerance (0.01 is 0.65), or of tree (by default 0.4).
     #[arg(long, value_name = "X")]
     pub theta: Option<f32>,
     /// Width of a shadow map in texels.
