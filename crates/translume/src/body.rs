@@ -10,7 +10,6 @@ use crate::kernel_texture::KernelTexture;
 use crate::layout::MAX_VIEWS;
 use crate::lighting::{self, GatherBody};
 use crate::pose::Pose;
-use crate::profile::Dipole;
 use crate::shadow_view::{Subject, View};
 use crate::stages::cluster::Tree;
 use crate::stages::deform::DeformGroups;
@@ -62,7 +61,7 @@ pub struct Body {
     owners: Vec<usize>,
     sky: SkyMemory,
     pending: StageSet,
-    /// Whether the kernel table no longer fits the medium, or the scatter uniforms the method.
+    /// Whether the kernel table no longer fits medium and profile, or the scatter uniforms the method.
     scatter_stale: bool,
     /// Whether light now enters the surface differently.
     surface_stale: bool,
@@ -85,7 +84,7 @@ impl Body {
         stages: Arc<Stages>,
         descriptor: &BodyDescriptor<'_>,
     ) -> Result<Self, Error> {
-        let BodyDescriptor { mesh, atlas, medium, profile, method, mm_per_unit, .. } = *descriptor;
+        let BodyDescriptor { mesh, atlas, medium, ref profile, method, mm_per_unit, .. } = *descriptor;
         descriptor.validate(device.limits().max_texture_dimension_2d)?;
         let extent = Extent::new(mesh, atlas);
         extent.check(&device.limits())?;
@@ -117,7 +116,7 @@ impl Body {
             shadows,
             limits: device.limits(),
             medium,
-            profile,
+            profile: profile.clone(),
             method,
             list_entries: descriptor.list_entries,
             dual: None,
@@ -269,10 +268,16 @@ impl Body {
         Ok(())
     }
 
-    /// Changes the profile. Today's profiles differ in how light leaves towards the eye, so no stage has to run again.
-    pub fn set_profile(&mut self, profile: Profile) {
-        self.profile = profile;
+    /// Changes the profile; the next frame scatters anew, unless both are classical dipoles, which differ in how light leaves alone.
+    ///
+    /// # Errors
+    /// [`Error::Profile`] names the parameter that cannot be, [`Error::Medium`] the coefficient of a layer.
+    pub fn set_profile(&mut self, profile: Profile) -> Result<(), Error> {
+        profile.validate()?;
+        self.scatter_stale |= !profile.scatters_like(&self.profile);
         self.exit_scale = profile.exit_scale(self.medium.ior);
+        self.profile = profile;
+        Ok(())
     }
 
     /// Changes how the scatter sum is evaluated; the next frame scatters anew.
@@ -297,8 +302,8 @@ impl Body {
 
     /// The profile.
     #[must_use]
-    pub fn profile(&self) -> Profile {
-        self.profile
+    pub fn profile(&self) -> &Profile {
+        &self.profile
     }
 
     /// Radiant exitance B over the atlas, `Rgba32Float`: linear RGB, alpha 1 where a texel or gutter is. Sample it with
@@ -367,12 +372,12 @@ impl Body {
         self.sky.prepare(queue, subject, &self.shadows)
     }
 
-    /// Makes the kernel table anew where the medium changed or the body outgrew it.
+    /// Makes the kernel table anew where medium or profile changed or the body outgrew it.
     fn refresh_kernel(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, diagonal: f32) {
         if !self.scatter_stale && self.kernel.fits(diagonal) {
             return;
         }
-        let channels = [0, 1, 2].map(|channel| Dipole::new(&self.medium, channel));
+        let channels = self.profile.channels(&self.medium);
         let table = self.kernel.write(queue, &channels, diagonal);
         let layout = Scatter::layout(table, &channels, &self.tree, self.method);
         // A single texel has no tree.

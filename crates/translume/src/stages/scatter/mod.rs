@@ -10,7 +10,7 @@ use crate::buffers::Buffers;
 use crate::gpu::{self, FLOAT_TEXTURE, Pass, READ, UNIFORM_ARRAY, UNIFORM_STRIDE, WRITE};
 use crate::kernel_table::KernelTableLayout;
 use crate::layout::ScatterLayout;
-use crate::profile::Dipole;
+use crate::profile::Channels;
 use crate::stages::cluster::Tree;
 
 /// How the sum over sources is evaluated.
@@ -102,7 +102,7 @@ impl Scatter {
     /// What the shader needs to know of a body of this medium.
     pub fn layout(
         table: KernelTableLayout,
-        channels: &[Dipole; 3],
+        channels: &Channels,
         tree: &Tree,
         method: Method,
     ) -> ScatterLayout {
@@ -110,8 +110,8 @@ impl Scatter {
             Method::Tree { theta } | Method::Dual { theta } => theta,
             Method::AllPairs => 0.0,
         };
-        let scattering = channels.iter().filter(|dipole| dipole.total() > 0.0);
-        let z_r = scattering.map(|dipole| dipole.z_r as f32).fold(1e15, f32::min);
+        let scattering = channels.iter().filter(|profile| profile.total() > 0.0);
+        let z_r = scattering.map(|profile| profile.smooth_length() as f32).fold(1e15, f32::min);
         let mut offsets = [[0; 4]; 4];
         for (level, offset) in tree.offsets.iter().enumerate() {
             offsets[level / 4][level % 4] = *offset;
