@@ -72,9 +72,11 @@ impl Dipole {
         let area = (outer - inner) * (outer + inner);
         let (sum, sum_out) = (near + far, near_out + far_out);
         let growth = area / (near + near_out) + area / (far + far_out);
-        let (apart, apart_out) = (self.gap_of_squares() / sum, self.gap_of_squares() / sum_out);
+        let apart = self.gap_of_squares() / sum;
+        // How much less the two distances differ at the outer rim.
+        let closer = self.sigma_tr * apart * (growth / sum_out);
         let ratio = -self.sigma_tr * area / (near + near_out) - (growth / sum).ln_1p()
-            + (mean_decay(self.sigma_tr * apart_out) / mean_decay(self.sigma_tr * apart)).ln();
+            + rise_of_mean_decay(self.sigma_tr * apart, closer);
         let falloff = (-self.sigma_tr * (self.z_r * self.z_r / (near + inner))).exp();
         -ratio.exp_m1() * falloff * apart * mean_decay(self.sigma_tr * apart)
     }
@@ -87,6 +89,16 @@ impl Dipole {
 /// (1 − e^(−x))/x, also at 0.
 fn mean_decay(x: f64) -> f64 {
     if x < 1e-12 { 1.0 } else { -(-x).exp_m1() / x }
+}
+
+/// ln of `mean_decay(x − step)` over `mean_decay(x)`, also for a tiny step.
+fn rise_of_mean_decay(x: f64, step: f64) -> f64 {
+    if step > 1e-3 {
+        return (mean_decay(x - step) / mean_decay(x)).ln();
+    }
+    let middle = x - 0.5 * step;
+    let slope = if middle < 0.01 { 0.5 - middle / 12.0 } else { 1.0 / middle - 1.0 / middle.exp_m1() };
+    step * slope
 }
 
 impl Radial for Dipole {

@@ -80,7 +80,7 @@ pub(crate) fn reflectance(layers: &Layers, top: &Medium, channel: usize) -> Samp
     let total = stack.at(0.0)[0];
     // Where little light is left, rounding takes over; where R_d falls exponentially by then, it goes on so.
     let visible = |r: f64| TAU * r * r * at(r) > 1e-7 * total;
-    let (near, limit) = (1e-2 * stack.shortest, 1e4 * stack.longest);
+    let (near, limit) = (3e-3 * stack.shortest, 1e4 * stack.longest);
     let mut far = stack.shortest;
     while far < limit && visible(1.2 * far) {
         far *= 1.2;

@@ -72,7 +72,7 @@ pub enum Diffusion {
     Dipole,
     /// As [`Profile::BetterDipole`], dimmed likewise.
     BetterDipole,
-    /// As [`Profile::PhotonBeam`]; κ leaves the room.
+    /// As [`Profile::PhotonBeam`], dimmed so that both together give back no more than they got: by 10 % at η = 1, 4 % at 1.3.
     PhotonBeam,
 }
 
