@@ -1,5 +1,7 @@
 //! Radial diffuse reflectance R_d(r): how far light wanders under the surface.
 
+#[cfg(test)]
+mod against_twin;
 mod beam;
 mod burley;
 mod channel;

@@ -81,12 +81,13 @@ impl Sampled {
         (cell as usize, at - cell)
     }
 
-    /// Slope of ln(R_d·e^(decay·r)) over ln r at the first knots, where R_d must stay integrable.
+    /// Slope of ln R_d over ln r at the first knots, where R_d must stay integrable.
     fn first_slope(&self) -> f64 {
-        ((self.logarithms[1] - self.logarithms[0]) / STEP).max(-1.9)
+        let rise = self.logarithms[1] - self.logarithms[0] - self.decay * (self.knot(1) - self.knot(0));
+        (rise / STEP).max(-1.9)
     }
 
-    /// The same at the last.
+    /// Slope of ln(R_d·e^(decay·r)) at the last.
     fn last_slope(&self) -> f64 {
         let last = self.logarithms.len() - 1;
         ((self.logarithms[last] - self.logarithms[last - 1]) / STEP).min(-2.1)
@@ -96,7 +97,7 @@ impl Sampled {
         let (k, t) = self.place(r);
         let y = &self.logarithms;
         if t < 0.0 {
-            return y[0] + self.first_slope() * STEP * t;
+            return y[0] + self.first_slope() * STEP * t + self.decay * (r - self.knot(0));
         }
         if t > 1.0 {
             return y[k + 1] + self.last_slope() * STEP * (t - 1.0);
@@ -123,7 +124,11 @@ impl Sampled {
 
     /// ∫ R_d 2πρ dρ from 0 to r at or below the first knot.
     fn within_first(&self, r: f64) -> f64 {
-        if r == 0.0 { 0.0 } else { TAU * r * r * self.logarithm(r).exp() / (2.0 + self.first_slope()) }
+        if r == 0.0 {
+            0.0
+        } else {
+            TAU * r * r * (self.logarithm(r) - self.decay * r).exp() / (2.0 + self.first_slope())
+        }
     }
 
     /// e^(decay·r) · ∫ R_d 2πρ dρ from r at or beyond the last knot on.
