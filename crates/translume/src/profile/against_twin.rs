@@ -111,8 +111,8 @@ fn layers_over_each_other() {
             let radii = [0.01, 0.1, 0.3, 1.0, 2.0, 4.0, 8.0];
             radii.iter().map(|&r| at(r).abs().max(ring(r).abs())).fold(0.0, f64::max)
         };
-        // Ogata's rule, interpolation, and the f32 thickness.
-        assert!(error(&twin(1.0)) < 1e-3, "{below:?}: {:e}", error(&twin(1.0)));
+        // Ogata's rule and the interpolations. Measured 2e-4.
+        assert!(error(&twin(1.0)) < 3e-4, "{below:?}: {:e}", error(&twin(1.0)));
         assert!(error(&twin(1.02)) > 1e-3, "{below:?}: 2 % of thickness must be noticed");
     }
 }
