@@ -19,37 +19,83 @@ pub struct Sheet {
 const MOST: i32 = 4000;
 
 /// Donner, Jensen 2005: reflectance of layers from top to bottom, air above and, unless the last is infinite, below.
+/// `range`, `decay`: as in [`Numeric::new`].
 #[must_use]
 pub fn stack(sheets: &[Sheet], range: [f64; 2], decay: f64) -> Numeric {
-    let depth = sheets.iter().map(|sheet| source(sheet).0).fold(f64::INFINITY, f64::min);
-    let spectrum = |k: f64| reflected(sheets, 0, k);
-    Numeric::new(|r| inverse_hankel(spectrum, depth, r), decay, depth, range)
-}
-
-/// Depth of the source, mm: the mean of where light is scattered first; and its power.
-fn source(sheet: &Sheet) -> (f64, f64) {
-    let sigma_t = sheet.channel.sigma_t();
-    if sheet.thickness.is_infinite() {
-        return (1.0 / sigma_t, sheet.channel.albedo());
-    }
-    let first = |t: f64| sigma_t * (-sigma_t * t).exp();
-    let scattered = integrate(first, 0.0, sheet.thickness, 1e-12);
-    let depth = integrate(|t| t * first(t), 0.0, sheet.thickness, 1e-12) / scattered;
-    (depth, sheet.channel.albedo() * scattered)
-}
-
-/// Reflectance at spatial frequency k, 1/mm, of the sheets from `top` on.
-fn reflected(sheets: &[Sheet], top: usize, k: f64) -> f64 {
-    let Some(sheet) = sheets.get(top) else { return 0.0 };
     let outside =
         |index: Option<usize>| index.and_then(|k| sheets.get(k)).map_or(1.0, |sheet| sheet.channel.ior);
-    let ratios = [outside(top.checked_sub(1)), outside(Some(top + 1))].map(|other| sheet.channel.ior / other);
-    let [back, down] = response(sheet, ratios, k);
-    if top + 1 == sheets.len() {
-        return back;
+    let plates: Vec<Plate> = (0..sheets.len())
+        .map(|k| Plate::new(&sheets[k], [outside(k.checked_sub(1)), outside(Some(k + 1))]))
+        .collect();
+    let depth = plates.iter().map(|plate| plate.depth).fold(f64::INFINITY, f64::min);
+    Numeric::new(|r| inverse_hankel(|k| reflected(&plates, k), depth, r), decay, depth, range)
+}
+
+struct Plate {
+    thickness: f64,
+    sigma_tr: f64,
+    /// Depth of the source, mm: the mean of where light is scattered first.
+    depth: f64,
+    power: f64,
+    /// What goes through without meeting anything.
+    unscattered: f64,
+    /// 2AD at top and bottom, mm.
+    z_b: [f64; 2],
+}
+
+impl Plate {
+    /// `outside`: index of refraction above and below.
+    fn new(sheet: &Sheet, outside: [f64; 2]) -> Self {
+        let (Sheet { channel, thickness }, sigma_t) = (*sheet, sheet.channel.sigma_t());
+        let end = thickness.min(50.0 / sigma_t);
+        let first = |t: f64| sigma_t * (-sigma_t * t).exp();
+        let scattered = integrate(first, 0.0, end, 1e-12);
+        let z_b = outside.map(|other| {
+            let f_dr = diffuse_reflectance_fit(channel.ior / other);
+            2.0 * (1.0 + f_dr) / (1.0 - f_dr) / (3.0 * sigma_t)
+        });
+        Self {
+            thickness,
+            sigma_tr: (3.0 * channel.sigma_a * sigma_t).sqrt(),
+            depth: integrate(|t| t * first(t), 0.0, end, 1e-12) / scattered,
+            power: channel.albedo() * scattered,
+            unscattered: (-sigma_t * thickness).exp(),
+            z_b,
+        }
     }
-    let [under, up] = response(sheet, [ratios[1], ratios[0]], k);
-    let below = reflected(sheets, top + 1, k);
+
+    /// What is reflected and what goes through, from one side. A source at depth z is the exponential e^(−sz) at the surface.
+    fn response(&self, k: f64, [near, far]: [f64; 2]) -> [f64; 2] {
+        let s = k.hypot(self.sigma_tr);
+        if self.thickness.is_infinite() {
+            let mirror = self.depth + 2.0 * near;
+            return [0.5 * self.power * ((-s * self.depth).exp() + (-s * mirror).exp()), 0.0];
+        }
+        let period = 2.0 * (self.thickness + near + far);
+        let wave = |z: f64| z.signum() * (-s * z.abs()).exp();
+        let pair = |i: i32| {
+            let real = f64::from(i) * period + self.depth;
+            let mirror = f64::from(i) * period - self.depth - 2.0 * near;
+            [wave(real) - wave(mirror), wave(self.thickness - real) - wave(self.thickness - mirror)]
+        };
+        let mut sums = pair(0);
+        for i in 1..MOST {
+            let [left, right] = [pair(-i), pair(i)];
+            (0..2).for_each(|k| sums[k] += left[k] + right[k]);
+            if [left, right].iter().flatten().all(|term| term.abs() < 1e-14) {
+                break;
+            }
+        }
+        [0.5 * self.power * sums[0], 0.5 * self.power * sums[1] + self.unscattered]
+    }
+}
+
+/// Reflectance at spatial frequency k, 1/mm.
+fn reflected(plates: &[Plate], k: f64) -> f64 {
+    let Some((plate, below)) = plates.split_first() else { return 0.0 };
+    let [back, down] = plate.response(k, plate.z_b);
+    let [under, up] = plate.response(k, [plate.z_b[1], plate.z_b[0]]);
+    let below = reflected(below, k);
     let (mut sum, mut bounce) = (back, down * below * up);
     for _ in 0..MOST {
         sum += bounce;
@@ -59,40 +105,6 @@ fn reflected(sheets: &[Sheet], top: usize, k: f64) -> f64 {
         }
     }
     sum
-}
-
-/// What is reflected and what goes through, from one side. A source at depth z is the exponential e^(−sz) at the surface.
-fn response(sheet: &Sheet, ratios: [f64; 2], k: f64) -> [f64; 2] {
-    let Channel { sigma_a, .. } = sheet.channel;
-    let sigma_t = sheet.channel.sigma_t();
-    let s = k.hypot((3.0 * sigma_a * sigma_t).sqrt());
-    let [near, far] = ratios.map(|eta| {
-        let f_dr = diffuse_reflectance_fit(eta);
-        2.0 * (1.0 + f_dr) / (1.0 - f_dr) / (3.0 * sigma_t)
-    });
-    let (depth, power) = source(sheet);
-    let through = (-sigma_t * sheet.thickness).exp();
-    if sheet.thickness.is_infinite() {
-        return [0.5 * power * ((-s * depth).exp() + (-s * (depth + 2.0 * near)).exp()), 0.0];
-    }
-    let period = 2.0 * (sheet.thickness + near + far);
-    let wave = |z: f64| z.signum() * (-s * z.abs()).exp();
-    let (mut reflected, mut passed) = (0.0, 0.0);
-    for i in 0..MOST {
-        let mut largest = 0.0_f64;
-        for i in if i == 0 { vec![0] } else { vec![-i, i] } {
-            let real = f64::from(i) * period + depth;
-            let mirror = f64::from(i) * period - depth - 2.0 * near;
-            let up = wave(real) - wave(mirror);
-            let on = wave(sheet.thickness - real) - wave(sheet.thickness - mirror);
-            (reflected, passed) = (reflected + 0.5 * power * up, passed + 0.5 * power * on);
-            largest = largest.max(up.abs() + on.abs());
-        }
-        if largest < 1e-14 {
-            break;
-        }
-    }
-    [reflected, passed + through]
 }
 
 /// 1/2π ∫ F(k) J₀(kr) k dk, for F that falls like e^(−k·depth).

@@ -55,7 +55,7 @@ pub enum Profile {
     WithSingleScattering(Diffusion),
     /// Christensen, Burley 2015, "Approximate Reflectance Profiles for Efficient Subsurface Scattering": fitted to random walks with
     /// *all* orders of scattering at η = 1. The closest to reality of those without parameters where the surface reflects little
-    /// inside; the index of refraction does not change it, which makes it too narrow at η of 1.3 and more. A of the surface
+    /// inside; the index of refraction does not change it, which makes it too bright at η of 1.3 and more. A of the surface
     /// comes from α' by Chandrasekhar's exact half-space, along the normal or from all sides as the fit says.
     NormalisedDiffusion(BurleyFit),
     /// Multipoles for a slab or for layers over each other (Donner, Jensen 2005), such as skin over fat. A thick slab is the classical
