@@ -17,7 +17,8 @@ const RANGE: [f64; 2] = [1e-5, 1e6];
 /// R_d of the beam: dipoles of d'Eon's kind along it, each held down near the surface by κ.
 pub(crate) fn beam(channel: &Channel) -> Sampled {
     let grosjean = Grosjean::new(channel);
-    let shape = shape(channel, grosjean.sigma_tr);
+    // κ leaves R_d only the logarithm of r near 0: the trees may pass over it as over a dipole's core.
+    let shape = Shape { smooth_length: 0.5 / channel.extinction(), ..shape(channel, grosjean.sigma_tr) };
     Sampled::new(&shape, |r| scaled_beam(channel, &grosjean, r))
 }
 
@@ -45,6 +46,8 @@ pub(crate) fn dipole_with_single(channel: &Channel, dipole: &Dipole) -> Sampled 
     })
 }
 
+/// Light scattered once falls like 1/r from r = 0 on, so there is no smooth core. With a core of one mean free path the error of the dual
+/// scatter over a body of texels shorter than that rose from 0.16 % to 2.7 %, for 14 % fewer evaluations.
 fn shape(channel: &Channel, decay: f64) -> Shape {
     let mean_free_path = 1.0 / channel.extinction();
     Shape { decay, smooth_length: 0.0, range: RANGE.map(|x| x * mean_free_path) }

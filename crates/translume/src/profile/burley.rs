@@ -85,6 +85,7 @@ impl Radial for Burley {
     }
 
     fn smooth_length(&self) -> f64 {
+        // 1/r has no core. With one of d the error of the dual scatter rose from 0.17 % to 0.74 %, with 2d to 10 %.
         0.0
     }
 }
