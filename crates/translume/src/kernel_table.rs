@@ -227,9 +227,9 @@ mod tests {
     }
 
     /// Largest error of bilinear interpolation against quadrature in the middle of cells, where ln K̄ is `shift` off.
-    fn interpolation_error(layout: KernelTableLayout, dipole: Arc<dyn Radial>, shift: f64) -> f64 {
-        let table = build(layout, &[(); 3].map(|()| Arc::clone(&dipole)));
-        let dipole = &*dipole;
+    fn interpolation_error(layout: KernelTableLayout, dipole: &Arc<dyn Radial>, shift: f64) -> f64 {
+        let table = build(layout, &[(); 3].map(|()| Arc::clone(dipole)));
+        let dipole = &**dipole;
         let at = |row: u32, column: u32| f64::from(table[(row * layout.columns + column) as usize][0]);
         let mut worst = 0.0_f64;
         for row in 0..layout.rows - 1 {
@@ -253,11 +253,11 @@ mod tests {
     fn interpolation_follows_quadrature() {
         let layout = KernelTableLayout::new(KernelRange { least_spread: 0.1, longest: 100.0 });
         for medium in [Medium::SKIMMILK, Medium::MARBLE, Medium::SKIN1] {
-            let error = interpolation_error(layout, dipole(&medium), 0.0);
+            let error = interpolation_error(layout, &dipole(&medium), 0.0);
             assert!(error < 5e-3, "{medium:?}: {error}");
         }
         assert!(
-            interpolation_error(layout, dipole(&Medium::MARBLE), 0.01) > 5e-3,
+            interpolation_error(layout, &dipole(&Medium::MARBLE), 0.01) > 5e-3,
             "a shifted table must be noticed"
         );
     }
