@@ -250,6 +250,26 @@ mod tests {
         }
     }
 
+    /// A profile like 1/r, and one that is smooth, of another kind than the dipole.
+    #[test]
+    fn evenly_lit_plane_is_the_total_of_any_profile() {
+        use crate::profile::{Channel, Entry, better_dipole, normalised_diffusion};
+        let channel = Channel { sigma_s_prime: 0.88, sigma_a: 0.17, ior: 1.0 };
+        let (positions, triangles) = square(200.0, 0.0);
+        let surface = Surface::flat(positions, triangles);
+        let lights = [uniform()];
+        let sharp = normalised_diffusion(&channel, Entry::Normal, None);
+        for (profile, tolerance) in [(better_dipole(&channel), 1e-4), (sharp, 0.02)] {
+            let total = profile.total();
+            let profiles = [(); 3].map(|()| profile.clone());
+            let plane = Converged::with_profiles(&surface, &lights, 1.0, profiles, 100.0);
+            let b = plane.exitance(&[[0.37, 0.0, -0.11]])[0];
+            // Within a hundredth of 1/decay of the receiver seven points stand for 1/r; the smooth one as above.
+            assert_rel(b[1], total, tolerance, "plane");
+            assert!((b[1] / (1.05 * total) - 1.0).abs() > tolerance, "5 % must be noticed");
+        }
+    }
+
     /// The sphere's closed form, approached with the square of the facets' edge.
     #[test]
     fn evenly_lit_sphere_is_the_closed_form() {
