@@ -19,4 +19,4 @@ pub use fixture::Fixture;
 pub use gpu::{Gpu, gpu};
 pub use models::{Model, creature, cuboids, limb, plane, sphere, sphere_with, teapot};
 pub use picture::{Shot, difference};
-pub use twin::{Pose, dipoles, light, luminous, sum};
+pub use twin::{Pose, dipoles, light, luminous, profiles, sum};

@@ -68,7 +68,8 @@ pub struct Render {
     /// Even out charts until every texel holds about the same area of the surface.
     #[arg(long)]
     pub even: bool,
-    /// Diffuse profile: dipole (the paper's formula to the letter) or dipole-normalised.
+    /// Diffuse profile: dipole (the paper's formula to the letter), dipole-normalised, better-dipole, photon-beam, normalised-diffusion,
+    /// normalised-diffusion-searchlight; a dipole, the better one or photon-beam with -single adds light scattered once.
     #[arg(long, value_name = "NAME", default_value = "dipole-normalised")]
     pub profile: String,
     /// How the scatter sum is evaluated: dual (groups of texels at both ends), tree (each texel by itself), or all-pairs (exact and slow).

@@ -2,7 +2,7 @@
 //!
 //! | module | what it computes |
 //! | --- | --- |
-//! | [`medium`], [`fresnel`], [`dipole`] | the optics: coefficients, exact Fresnel terms, the diffuse reflectance profile |
+//! | [`medium`], [`fresnel`], [`dipole`], [`profile`] | the optics: coefficients, exact Fresnel terms, diffuse reflectance profiles |
 //! | [`surface`], [`lights`], [`environment`] | the scene: triangles with ray queries, and what illuminates them |
 //! | [`deform`] | positions and normals of a morphed pose |
 //! | [`gather`] | position, normal, live area and irradiance of every texel, shadows by ray casting |
@@ -26,6 +26,7 @@ pub mod gather;
 pub mod lights;
 pub mod medium;
 pub mod metrics;
+pub mod profile;
 mod quadrature;
 mod rgb;
 pub mod scatter;

@@ -9,8 +9,8 @@ use std::f64::consts::{PI, SQRT_2};
 use glam::DVec3;
 use rayon::prelude::*;
 
-use crate::Dipole;
 use crate::gather::Source;
+use crate::profile::Profile;
 use crate::quadrature::integrate;
 use crate::rgb::accumulate;
 
@@ -24,7 +24,7 @@ const NEIGHBOUR_NARROWING: f64 = 0.945;
 /// # Panics
 /// If a receiver is not the index of a texel.
 #[must_use]
-pub fn all_pairs(sources: &[Source], dipoles: &[Dipole; 3], receivers: &[usize]) -> Vec<[f64; 3]> {
+pub fn all_pairs<P: Profile>(sources: &[Source], profiles: &[P; 3], receivers: &[usize]) -> Vec<[f64; 3]> {
     let lit: Vec<(usize, &Source)> =
         sources.iter().enumerate().filter(|(_, s)| s.power() != [0.0; 3]).collect();
     let exitance = |&receiver: &usize| {
@@ -33,7 +33,7 @@ pub fn all_pairs(sources: &[Source], dipoles: &[Dipole; 3], receivers: &[usize])
         for (index, source) in &lit {
             let power = source.power();
             let narrowing = if *index == receiver { 1.0 } else { NEIGHBOUR_NARROWING };
-            let kernel = averaged_kernel(dipoles, at, source, narrowing);
+            let kernel = averaged_kernel(profiles, at, source, narrowing);
             accumulate(&mut sum, std::array::from_fn(|k| kernel[k] * power[k]), 1.0);
         }
         sum
@@ -42,13 +42,13 @@ pub fn all_pairs(sources: &[Source], dipoles: &[Dipole; 3], receivers: &[usize])
 }
 
 /// K̄ of each channel, 1/mm², at a point for one source.
-fn averaged_kernel(dipoles: &[Dipole; 3], at: DVec3, source: &Source, narrowing: f64) -> [f64; 3] {
+fn averaged_kernel<P: Profile>(profiles: &[P; 3], at: DVec3, source: &Source, narrowing: f64) -> [f64; 3] {
     let offset = at - DVec3::from(source.position);
     let r = offset.length();
     let cos = if r > 0.0 { offset.dot(source.normal.into()) / r } else { 0.0 };
     let radius = SQRT_2 * source.spread() * narrowing;
     std::array::from_fn(|k| {
-        let (lying, facing) = disc_average(&dipoles[k], r, radius);
+        let (lying, facing) = disc_average(&profiles[k], r, radius);
         lying * (1.0 - cos * cos) + facing * cos * cos
     })
 }
@@ -56,26 +56,27 @@ fn averaged_kernel(dipoles: &[Dipole; 3], at: DVec3, source: &Source, narrowing:
 /// Mean of R_d, 1/mm², over a flat disc of radius `a` mm (rms radius a/√2) whose centre is `r` mm away: with the disc
 /// lying along the connecting line, and with the disc facing it. Relative error below 1e-7; a = 0 gives R_d(r) twice.
 #[must_use]
-pub fn disc_average(dipole: &Dipole, r: f64, a: f64) -> (f64, f64) {
-    if dipole.albedo == 0.0 {
+pub fn disc_average<P: Profile>(profile: &P, r: f64, a: f64) -> (f64, f64) {
+    if profile.total() == 0.0 {
         return (0.0, 0.0);
     }
     let area = PI * a * a;
-    let point = dipole.reflectance(r);
+    let point = profile.reflectance(r);
     // A disc whose area or whose ring underflows is a point.
-    let facing = if area < f64::MIN_POSITIVE { point } else { dipole.ring(r, a) / area };
-    let smallest_distance = (r * r + dipole.z[0] * dipole.z[0]).sqrt();
-    let relative_size = a * (1.0 / smallest_distance + dipole.sigma_tr);
-    let lying = if relative_size < 0.03 { small_lying_disc(dipole, r, a) } else { lying_disc(dipole, r, a) };
+    let facing = if area < f64::MIN_POSITIVE { point } else { profile.ring(r, a) / area };
+    let smallest_distance = (r * r + profile.core() * profile.core()).sqrt();
+    let relative_size = a * (1.0 / smallest_distance + profile.decay());
+    let lying =
+        if relative_size < 0.03 { small_lying_disc(profile, r, a) } else { lying_disc(profile, r, a) };
     (lying, facing)
 }
 
 /// Radon's seven-point rule of degree 5 for the disc: 1/4 at the centre and 1/8 at six points at √(2/3) of the radius,
 /// here mirrored about the connecting line. Its error is of the order of the sixth power of the disc's size over the
 /// kernel's length.
-fn small_lying_disc(dipole: &Dipole, r: f64, a: f64) -> f64 {
+fn small_lying_disc(profile: &impl Profile, r: f64, a: f64) -> f64 {
     let ring = a * (2.0f64 / 3.0).sqrt();
-    let at = |along: f64, across: f64| dipole.reflectance((r + along).hypot(across));
+    let at = |along: f64, across: f64| profile.reflectance((r + along).hypot(across));
     let (half, height) = (0.5 * ring, 0.75f64.sqrt() * ring);
     0.25 * at(0.0, 0.0)
         + 0.125 * (at(ring, 0.0) + at(-ring, 0.0))
@@ -86,9 +87,9 @@ fn small_lying_disc(dipole: &Dipole, r: f64, a: f64) -> f64 {
 /// ∫_disc R_d dA into 1/2π ∮ M(ρ) dψ, ψ the rim's direction seen from the receiver: the integral ∫ R_d ρ 2φ(ρ) dρ over
 /// arcs φ integrated by parts, without its root singularities. Outside the disc ∮ dψ = 0 and M may be replaced by
 /// M − total, which keeps its digits where R_d is exponentially small.
-fn lying_disc(dipole: &Dipole, r: f64, a: f64) -> f64 {
+fn lying_disc(profile: &impl Profile, r: f64, a: f64) -> f64 {
     let clearance = r - a;
-    let near = clearance <= dipole.z[0];
+    let near = clearance <= profile.core();
     // At angle t from the rim's nearest point: ρ² = (r − a)² + 4 r a sin²(t/2), ρ² dψ/dt = a² − a r cos t.
     let rim = |t: f64| {
         let chord = (0.5 * t).sin().powi(2);
@@ -96,16 +97,19 @@ fn lying_disc(dipole: &Dipole, r: f64, a: f64) -> f64 {
         let turn = 2.0 * a * r * chord - a * clearance;
         if near {
             // M/ρ² is the mean over the disc of radius ρ and stays finite as ρ vanishes.
-            let mean =
-                if rho > 1e-150 { dipole.enclosed(rho) / (rho * rho) } else { PI * dipole.reflectance(0.0) };
+            let mean = if rho > 1e-150 {
+                profile.enclosed(rho) / (rho * rho)
+            } else {
+                PI * profile.reflectance(0.0)
+            };
             mean * turn
         } else {
-            -dipole.beyond(rho) * turn / (rho * rho)
+            -profile.beyond(rho) * turn / (rho * rho)
         }
     };
-    // Near t = 0 the integrand changes over the clearance or over z_r: panels that double from there resolve it.
+    // Near t = 0 the integrand changes over the clearance or over the profile's core: panels that double from there resolve it.
     let mut from = 0.0;
-    let mut to = clearance.abs().max(dipole.z[0]) / a;
+    let mut to = clearance.abs().max(profile.core()).max(1e-9 * a) / a;
     let mut sum = 0.0;
     while from < PI {
         to = if to > 0.5 * PI { PI } else { to };
@@ -118,9 +122,9 @@ fn lying_disc(dipole: &Dipole, r: f64, a: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Medium;
     use crate::quadrature::integrate_panels;
     use crate::testing::{assert_rel, sphere_exitance};
+    use crate::{Dipole, Medium};
 
     const MARBLE: Medium =
         Medium { sigma_s_prime: [2.19, 2.62, 3.0], sigma_a: [0.0021, 0.0041, 0.0071], ior: 1.5 };

@@ -14,7 +14,6 @@ use crate::kernel_texture::KernelTexture;
 use crate::layout::{MAX_VIEWS, NeedLayout};
 use crate::lighting::{self, GatherBody};
 use crate::pose::Pose;
-use crate::profile::Dipole;
 use crate::shadow_view::{Subject, View};
 use crate::stages::cluster::Tree;
 use crate::stages::deform::DeformGroups;
@@ -59,6 +58,8 @@ pub struct Body {
     /// Where the last frame evaluated.
     evaluated: Evaluate,
     need: NeedLayout,
+    /// Below which length the profile is smooth in every channel, mm.
+    smooth_length: f32,
     pub(crate) kind: MediumKind,
     /// Which texels have a vertex, among marks of a medium without variation.
     marks: Vec<u32>,
@@ -80,7 +81,7 @@ pub struct Body {
     owners: Vec<usize>,
     sky: SkyMemory,
     pending: StageSet,
-    /// Whether the kernel table no longer fits the medium.
+    /// Whether the kernel table no longer fits medium and profile.
     scatter_stale: bool,
     /// Whether the scatter uniforms no longer fit the method.
     method_stale: bool,
@@ -108,7 +109,7 @@ impl Body {
         stages: Arc<Stages>,
         descriptor: &BodyDescriptor<'_>,
     ) -> Result<Self, Error> {
-        let BodyDescriptor { mesh, atlas, medium, profile, method, mm_per_unit, .. } = *descriptor;
+        let BodyDescriptor { mesh, atlas, medium, ref profile, method, mm_per_unit, .. } = *descriptor;
         descriptor.validate(device.limits().max_texture_dimension_2d)?;
         let extent = Extent::new(mesh, atlas);
         extent.check(&device.limits())?;
@@ -140,7 +141,7 @@ impl Body {
             shadows,
             limits: device.limits(),
             medium,
-            profile,
+            profile: profile.clone(),
             method,
             list_entries: descriptor.list_entries,
             dual: None,
@@ -148,6 +149,7 @@ impl Body {
             evaluate: descriptor.evaluate,
             evaluated: Evaluate::PerTexel,
             need: NeedLayout::default(),
+            smooth_length: 0.0,
             kind: MediumKind::default(),
             marks: standing.marks,
             greatest_scale: 1.0,
@@ -337,10 +339,16 @@ impl Body {
         Ok(())
     }
 
-    /// Changes the profile. Today's profiles differ in how light leaves towards the eye, so no stage has to run again.
-    pub fn set_profile(&mut self, profile: Profile) {
-        self.profile = profile;
+    /// Changes the profile; the next frame scatters anew, unless both are classical dipoles, which differ in how light leaves alone.
+    ///
+    /// # Errors
+    /// [`Error::Profile`] names the parameter that cannot be, [`Error::Medium`] the coefficient of a layer.
+    pub fn set_profile(&mut self, profile: Profile) -> Result<(), Error> {
+        profile.validate()?;
+        self.scatter_stale |= !profile.scatters_like(&self.profile);
         self.exit_scale = profile.exit_scale(self.medium.ior);
+        self.profile = profile;
+        Ok(())
     }
 
     /// Changes how the scatter sum is evaluated; the next frame scatters anew.
@@ -379,8 +387,8 @@ impl Body {
 
     /// The profile.
     #[must_use]
-    pub fn profile(&self) -> Profile {
-        self.profile
+    pub fn profile(&self) -> &Profile {
+        &self.profile
     }
 
     /// Radiant exitance B over the atlas, `Rgba32Float`: linear RGB, alpha 1 where a texel or gutter is. Sample it with
@@ -448,18 +456,20 @@ impl Body {
         self.sky.prepare(queue, subject, &self.shadows)
     }
 
-    /// Makes the kernel table anew where the medium changed or the body outgrew it, and what depends on the method.
+    /// Makes the kernel table anew where medium or profile changed or the body outgrew it, and what depends on the method.
     fn refresh_kernel(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, diagonal: f32) {
         let outgrown = self.scatter_stale || !self.kernel.fits(diagonal);
         if !outgrown && !self.method_stale {
             return;
         }
-        let channels = [0, 1, 2].map(|channel| Dipole::new(&self.medium, channel));
         if outgrown {
+            let channels = self.profile.channels(&self.medium);
             self.table = self.kernel.write(queue, &channels, diagonal);
+            self.kind.monochrome = channels[1..].iter().all(|channel| Arc::ptr_eq(channel, &channels[0]));
+            self.smooth_length = crate::profile::smooth_length(&channels);
         }
-        self.kind.monochrome = self.medium.is_monochrome();
-        let layout = Scatter::layout(self.table, &channels, self.greatest_scale, &self.tree, self.method);
+        let smooth_length = self.smooth_length / self.greatest_scale;
+        let layout = Scatter::layout(self.table, smooth_length, &self.tree, self.method);
         if let Some(theta) = self.dual_theta() {
             let (stage, tree) = (&self.stages.scatter.dual, &self.tree);
             let demand = Demand { list_entries: self.list_entries, theta, evaluate: self.evaluated };

@@ -5,7 +5,7 @@ use crate::{Error, Evaluate, Medium, Method, Profile, ShadowOptions};
 use translume_mesh::{Atlas, Influence, Mesh, Skin};
 
 /// What a body is made of and how it is computed.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct BodyDescriptor<'a> {
     /// The mesh, clean (see [`translume_mesh::repair`]).
     pub mesh: &'a Mesh,
@@ -54,6 +54,7 @@ impl<'a> BodyDescriptor<'a> {
     pub(crate) fn validate(&self, limit: u32) -> Result<(), Error> {
         validate_shape(self.mesh, self.atlas)?;
         self.medium.validate()?;
+        self.profile.validate()?;
         self.method.validate()?;
         let fail =
             |problem: String, remedy| Err(Error::Body { mesh: self.mesh.name.clone(), problem, remedy });

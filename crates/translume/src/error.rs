@@ -44,6 +44,14 @@ pub enum Error {
         /// All names.
         known: String,
     },
+    /// A parameter of a profile cannot be.
+    #[error("profile: {problem}; {remedy}")]
+    Profile {
+        /// What is wrong, naming the entry.
+        problem: String,
+        /// What to do about it.
+        remedy: &'static str,
+    },
     /// Mesh and atlas do not belong together, or hold numbers that cannot be.
     #[error("{mesh}: {problem}; {remedy}")]
     Body {

@@ -5,8 +5,11 @@
 //! logarithm so that nothing underflows, for the disc lying along r and for the disc facing r; WGSL blends the two by the
 //! squared cosine between the source's normal and r.
 
-use crate::profile::Dipole;
+use crate::profile::Channels;
+use crate::profile::radial::Radial;
+use crate::quadrature::{GAUSS_12, GAUSS_32, integrate};
 use std::f64::consts::PI;
+use std::sync::Arc;
 
 /// Cells per octave of r² and of s². Linear interpolation of ln K̄ then stays within 0.5 % of quadrature
 /// (test `interpolation_follows_quadrature`).
@@ -60,15 +63,18 @@ impl KernelTableLayout {
 }
 
 /// `columns` × 2·`rows` texels of ln K̄: the lying half, then the facing half.
-pub(crate) fn build(layout: KernelTableLayout, channels: &[Dipole; 3]) -> Vec<[f32; 4]> {
+pub(crate) fn build(layout: KernelTableLayout, channels: &Channels) -> Vec<[f32; 4]> {
     let mut texels = Vec::with_capacity((layout.columns * layout.rows * 2) as usize);
-    for average in [ln_lying as fn(&Dipole, f64, f64) -> f64, ln_facing] {
+    let alike = |a: usize, b: usize| Arc::ptr_eq(&channels[a], &channels[b]);
+    for average in [ln_lying as fn(&dyn Radial, f64, f64) -> f64, ln_facing] {
         for row in 0..layout.rows {
             let radius = layout.disc_radius(row.into());
             for column in 0..layout.columns {
                 let r = layout.distance(column.into());
-                let [red, green, blue] =
-                    [0, 1, 2].map(|k| average(&channels[k], r, radius).max(LN_NOTHING) as f32);
+                let ln = |k: usize| average(&*channels[k], r, radius).max(LN_NOTHING) as f32;
+                let red = ln(0);
+                let green = if alike(0, 1) { red } else { ln(1) };
+                let blue = if alike(1, 2) { green } else { ln(2) };
                 texels.push([red, green, blue, 0.0]);
             }
         }
@@ -80,78 +86,53 @@ pub(crate) fn build(layout: KernelTableLayout, channels: &[Dipole; 3]) -> Vec<[f
 ///
 /// In polar coordinates around the receiver: full circles inside the disc in closed form, then arcs of the angle
 /// 2·acos((ρ² + r² − a²)/(2ρr)). ρ = max − min·cos(πu³) puts the nodes where R_d falls fastest.
-pub(crate) fn ln_lying(dipole: &Dipole, r: f64, a: f64) -> f64 {
+pub(crate) fn ln_lying(profile: &dyn Radial, r: f64, a: f64) -> f64 {
     let (long, short) = (r.max(a), r.min(a));
     let nearest = long - short;
     let arcs = if short == 0.0 {
         0.0
     } else {
-        integrate(nodes_for(dipole, r, a), |u| {
+        integrate(nodes_for(profile, r, a), |u| {
             let t = PI * u * u * u;
             // 1 − cos t without cancellation.
             let rise = 2.0 * short * (0.5 * t).sin().powi(2);
             let rho = nearest + rise;
             let cosine = ((rho * rho + r * r - a * a) / (2.0 * rho * r)).clamp(-1.0, 1.0);
             let arc = 2.0 * cosine.acos() * rho;
-            let falloff = (-dipole.sigma_tr * rise).exp();
-            dipole.scaled_reflectance(rho) * falloff * arc * short * t.sin() * 3.0 * PI * u * u
+            let falloff = (-profile.decay() * rise).exp();
+            profile.scaled_reflectance(rho) * falloff * arc * short * t.sin() * 3.0 * PI * u * u
         })
     };
     if r < a {
-        let circles = dipole.enclosed(nearest);
-        ((circles + arcs * (-dipole.sigma_tr * nearest).exp()) / (PI * a * a)).ln()
+        let circles = profile.enclosed(nearest);
+        ((circles + arcs * (-profile.decay() * nearest).exp()) / (PI * a * a)).ln()
     } else {
-        (arcs / (PI * a * a)).ln() - dipole.sigma_tr * nearest
+        (arcs / (PI * a * a)).ln() - profile.decay() * nearest
     }
 }
 
 /// ln of the mean of R_d over a disc of radius `a` that faces the receiver, its centre at distance `r`: the distances from r to
 /// √(r² + a²), each with the same share of the disc, are a ring of the plane.
-pub(crate) fn ln_facing(dipole: &Dipole, r: f64, a: f64) -> f64 {
-    (dipole.scaled_ring(r, (r * r + a * a).sqrt()) / (PI * a * a)).ln() - dipole.sigma_tr * r
+pub(crate) fn ln_facing(profile: &dyn Radial, r: f64, a: f64) -> f64 {
+    (profile.scaled_ring(r, (r * r + a * a).sqrt()) / (PI * a * a)).ln() - profile.decay() * r
 }
 
 /// Discs that are small seen from the receiver, and over which R_d hardly falls, need few nodes.
-fn nodes_for(dipole: &Dipole, r: f64, a: f64) -> &'static [(f64, f64)] {
-    if a < 0.25 * r && a * dipole.sigma_tr < 1.0 { &*GAUSS_12 } else { &*GAUSS_32 }
-}
-
-fn integrate(nodes: &[(f64, f64)], f: impl Fn(f64) -> f64) -> f64 {
-    nodes.iter().map(|&(x, weight)| weight * f(x)).sum()
-}
-
-static GAUSS_12: std::sync::LazyLock<[(f64, f64); 12]> = std::sync::LazyLock::new(gauss_legendre);
-static GAUSS_32: std::sync::LazyLock<[(f64, f64); 32]> = std::sync::LazyLock::new(gauss_legendre);
-
-/// Nodes and weights on [0, 1]: roots of the Legendre polynomial by Newton's method.
-fn gauss_legendre<const N: usize>() -> [(f64, f64); N] {
-    std::array::from_fn(|k| {
-        let mut x = (PI * (k as f64 + 0.75) / (N as f64 + 0.5)).cos();
-        let mut slope = 1.0;
-        for _ in 0..50 {
-            let (mut previous, mut value) = (1.0, x);
-            for n in 2..=N {
-                let n = n as f64;
-                (previous, value) = (value, ((2.0 * n - 1.0) * x * value - (n - 1.0) * previous) / n);
-            }
-            slope = N as f64 * (x * value - previous) / (x * x - 1.0);
-            x -= value / slope;
-        }
-        (0.5 + 0.5 * x, 1.0 / ((1.0 - x * x) * slope * slope))
-    })
+fn nodes_for(profile: &dyn Radial, r: f64, a: f64) -> &'static [(f64, f64)] {
+    if a < 0.25 * r && a * profile.decay() < 1.0 { &*GAUSS_12 } else { &*GAUSS_32 }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Medium;
+    use crate::{BurleyFit, Medium, Profile};
 
-    fn dipole(medium: &Medium) -> Dipole {
-        Dipole::new(medium, 0)
+    fn dipole(medium: &Medium) -> Arc<dyn Radial> {
+        Arc::clone(&Profile::Dipole.channels(medium)[0])
     }
 
     /// Mean over the disc by brute force: a dense polar grid around the disc's centre.
-    fn brute_force(dipole: &Dipole, r: f64, a: f64, facing: bool) -> f64 {
+    fn brute_force(dipole: &dyn Radial, r: f64, a: f64, facing: bool) -> f64 {
         let (rings, spokes) = (400, 400);
         let mut sum = 0.0;
         for i in 0..rings {
@@ -161,7 +142,7 @@ mod tests {
                 let d2 =
                     if facing { r * r + rho * rho } else { r * r + rho * rho - 2.0 * r * rho * angle.cos() };
                 let d = d2.sqrt();
-                sum += dipole.scaled_reflectance(d) * (-dipole.sigma_tr * d).exp();
+                sum += dipole.scaled_reflectance(d) * (-dipole.decay() * d).exp();
             }
         }
         sum / f64::from(rings * spokes)
@@ -170,11 +151,11 @@ mod tests {
     #[test]
     fn averages_match_brute_force() {
         for medium in [Medium::SKIMMILK, Medium::MARBLE, Medium::KETCHUP, Medium::SPECTRALON] {
-            let dipole = dipole(&medium);
+            let dipole = &*dipole(&medium);
             for r in [0.05, 0.3, 1.0, 5.0] {
-                for a in [0.01, 0.2, 0.9, 2.0].into_iter().filter(|a| *a < 10.0 * dipole.z_r) {
-                    for (ln, facing) in [(ln_lying(&dipole, r, a), false), (ln_facing(&dipole, r, a), true)] {
-                        let expected = brute_force(&dipole, r, a, facing);
+                for a in [0.01, 0.2, 0.9, 2.0].into_iter().filter(|a| *a < 10.0 * dipole.smooth_length()) {
+                    for (ln, facing) in [(ln_lying(dipole, r, a), false), (ln_facing(dipole, r, a), true)] {
+                        let expected = brute_force(dipole, r, a, facing);
                         let error = ln.exp() / expected - 1.0;
                         // 0.3 %: the brute-force grid's own error where a narrow peak lies inside the disc.
                         assert!(error.abs() < 3e-3, "{medium:?} r {r} a {a} facing {facing}: {error}");
@@ -184,13 +165,38 @@ mod tests {
         }
     }
 
+    /// Profiles without a bound at r = 0, and those that are sampled. Brute force cannot resolve discs over a peak: they stay beside.
+    #[test]
+    fn averages_of_other_profiles_match_brute_force() {
+        let medium = Medium::SKIN1;
+        for profile in [
+            Profile::NormalisedDiffusion(BurleyFit::Searchlight),
+            Profile::PhotonBeam,
+            Profile::named("photon-beam-single").unwrap(),
+            Profile::BetterDipole,
+        ] {
+            let channels = profile.channels(&medium);
+            for (r, a) in [(0.1, 0.05), (0.5, 0.4), (1.0, 0.1), (3.0, 2.0), (9.0, 1.0)] {
+                for (ln, facing) in
+                    [(ln_lying(&*channels[1], r, a), false), (ln_facing(&*channels[1], r, a), true)]
+                {
+                    let expected = brute_force(&*channels[1], r, a, facing);
+                    // As above.
+                    assert!((ln.exp() / expected - 1.0).abs() < 3e-3, "{profile:?} r {r} a {a} {facing}");
+                    let other = brute_force(&*channels[1], 1.01 * r, a, facing);
+                    assert!(r < 0.5 || (ln.exp() / other - 1.0).abs() > 3e-3, "{profile:?}: 1 % farther");
+                }
+            }
+        }
+    }
+
     #[test]
     fn a_disc_around_the_receiver_has_a_closed_form() {
         for (_, medium) in Medium::PRESETS {
-            let dipole = dipole(medium);
+            let dipole = &*dipole(medium);
             for a in [1e-3, 0.1, 10.0, 1e4] {
                 let expected = dipole.enclosed(a) / (PI * a * a);
-                for ln in [ln_lying(&dipole, 0.0, a), ln_facing(&dipole, 0.0, a)] {
+                for ln in [ln_lying(dipole, 0.0, a), ln_facing(dipole, 0.0, a)] {
                     assert!((ln.exp() / expected - 1.0).abs() < 1e-9, "{medium:?} {a}");
                 }
             }
@@ -199,10 +205,10 @@ mod tests {
 
     #[test]
     fn a_small_disc_is_a_point() {
-        let dipole = dipole(&Medium::SKIN1);
+        let dipole = &*dipole(&Medium::SKIN1);
         for r in [0.5, 5.0, 50.0] {
-            let point = dipole.scaled_reflectance(r).ln() - dipole.sigma_tr * r;
-            for ln in [ln_lying(&dipole, r, 1e-3 * r), ln_facing(&dipole, r, 1e-3 * r)] {
+            let point = dipole.scaled_reflectance(r).ln() - dipole.decay() * r;
+            for ln in [ln_lying(dipole, r, 1e-3 * r), ln_facing(dipole, r, 1e-3 * r)] {
                 assert!((ln - point).abs() < 1e-4, "r {r}: {ln} against {point}");
             }
         }
@@ -213,16 +219,17 @@ mod tests {
         for scale in [1e-6, 1e-3, 1.0, 1e3, 1e6] {
             let medium = Medium { sigma_s_prime: [scale; 3], sigma_a: [0.1 * scale; 3], ior: 1.3 };
             let layout = KernelTableLayout::new(KernelRange { least_spread: 1e-3, longest: 1e3 });
-            let dipole = dipole(&medium);
-            for texel in build(layout, &[dipole; 3]) {
+            let channels = Profile::Dipole.channels(&medium);
+            for texel in build(layout, &channels) {
                 assert!(texel.iter().all(|v| v.is_finite() && *v >= LN_NOTHING as f32), "{scale}: {texel:?}");
             }
         }
     }
 
     /// Largest error of bilinear interpolation against quadrature in the middle of cells, where ln K̄ is `shift` off.
-    fn interpolation_error(layout: KernelTableLayout, dipole: &Dipole, shift: f64) -> f64 {
-        let table = build(layout, &[*dipole; 3]);
+    fn interpolation_error(layout: KernelTableLayout, dipole: &Arc<dyn Radial>, shift: f64) -> f64 {
+        let table = build(layout, &[(); 3].map(|()| Arc::clone(dipole)));
+        let dipole = &**dipole;
         let at = |row: u32, column: u32| f64::from(table[(row * layout.columns + column) as usize][0]);
         let mut worst = 0.0_f64;
         for row in 0..layout.rows - 1 {
@@ -232,7 +239,7 @@ mod tests {
                 let exact = ln_lying(dipole, r, a);
                 // Where a disc's rim passes over the receiver no smooth table follows, and where light dies out across a disc its
                 // mean says little: the tree opens such clusters.
-                if exact > -30.0 && !(0.4..2.0).contains(&(r / a)) && dipole.sigma_tr * a < 1.0 {
+                if exact > -30.0 && !(0.4..2.0).contains(&(r / a)) && dipole.decay() * a < 1.0 {
                     let corners =
                         at(row, column) + at(row, column + 1) + at(row + 1, column) + at(row + 1, column + 1);
                     worst = worst.max((0.25 * corners + shift - exact).abs());

@@ -2,7 +2,7 @@
 
 use crate::gpu;
 use crate::kernel_table::{self, KernelRange, KernelTableLayout};
-use crate::profile::Dipole;
+use crate::profile::Channels;
 use translume_mesh::{Atlas, Mesh};
 
 /// How much longer than the body's diagonal the table reaches.
@@ -41,7 +41,7 @@ impl KernelTexture {
     }
 
     /// Computes the content for a medium. A body that outgrew the old content gets room to grow.
-    pub fn write(&mut self, queue: &wgpu::Queue, channels: &[Dipole; 3], diagonal: f32) -> KernelTableLayout {
+    pub fn write(&mut self, queue: &wgpu::Queue, channels: &Channels, diagonal: f32) -> KernelTableLayout {
         if !self.fits(diagonal) {
             self.diagonal = 1.25 * diagonal.max(f32::MIN_POSITIVE);
         }

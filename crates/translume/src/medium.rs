@@ -82,11 +82,6 @@ impl Medium {
         )
     }
 
-    /// Whether the three channels are alike.
-    pub(crate) fn is_monochrome(&self) -> bool {
-        [self.sigma_s_prime, self.sigma_a].iter().all(|[red, green, blue]| red == green && green == blue)
-    }
-
     /// Mean free path of light in the channel where it is shortest, mm; 10¹² where nothing scatters.
     pub(crate) fn shortest_path(&self) -> f32 {
         let channels = self.sigma_s_prime.into_iter().zip(self.sigma_a);

@@ -83,7 +83,7 @@ fn a_medium_runs_what_reads_it() {
     assert!(stages.contains(&Stage::Gather) && !stages.contains(&Stage::Deform), "{stages:?}");
     fixture.body.set_medium(Medium::SKIN1).unwrap();
     assert_eq!(pending(&mut fixture, &pose.frame(&lights)), [], "the same medium once more");
-    fixture.body.set_profile(Profile::Dipole);
+    fixture.body.set_profile(Profile::Dipole).unwrap();
     assert_eq!(pending(&mut fixture, &pose.frame(&lights)), [], "only the way to the eye changed");
 }
 

@@ -13,7 +13,6 @@ use crate::gpu::{
 };
 use crate::kernel_table::KernelTableLayout;
 use crate::layout::ScatterLayout;
-use crate::profile::Dipole;
 use crate::stages::cluster::Tree;
 
 /// How the sum over sources is evaluated.
@@ -127,8 +126,7 @@ impl Scatter {
     /// What the shader needs to know of a body of this medium.
     pub fn layout(
         table: KernelTableLayout,
-        channels: &[Dipole; 3],
-        greatest_scale: f32,
+        smooth_length: f32,
         tree: &Tree,
         method: Method,
     ) -> ScatterLayout {
@@ -136,8 +134,6 @@ impl Scatter {
             Method::Tree { theta } | Method::Dual { theta } => theta,
             _ => 0.0,
         };
-        let scattering = channels.iter().filter(|dipole| dipole.total() > 0.0);
-        let z_r = scattering.map(|dipole| dipole.z_r as f32).fold(1e15, f32::min) / greatest_scale;
         let mut sources = [[0; 4]; 4];
         for (level, offset) in tree.source_offsets.iter().enumerate() {
             sources[level / 4][level % 4] = *offset;
@@ -149,7 +145,7 @@ impl Scatter {
             source_count: 0,
             top_level: tree.top_level(),
             theta_squared: theta * theta,
-            z_r_squared: z_r * z_r,
+            z_r_squared: smooth_length * smooth_length,
             padding: [0; 2],
             sources,
         }

@@ -1,0 +1,91 @@
+//! Normalised diffusion: two exponentials fitted to random walks in an index-matched half-space.
+
+use super::channel::Channel;
+use super::half_space::{Entry, albedo};
+use super::radial::Radial;
+use crate::Error;
+use std::f64::consts::PI;
+
+/// Which of the three fits of Christensen and Burley 2015 shapes the profile.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub enum BurleyFit {
+    /// Light that enters along the normal (their eq. 5). Within 5.5 % of their random walks.
+    Searchlight,
+    /// Light that enters from all sides, as under a sky or through a rough surface (eq. 6). Within 3.9 %.
+    #[default]
+    Diffuse,
+    /// As `Diffuse` with the length set by hand (eqs. 7, 8): the diffuse mean free path on the surface, RGB, mm. Finite, > 0. Of the
+    /// medium only the albedo counts then.
+    DiffuseMeanFreePath([f32; 3]),
+}
+
+impl BurleyFit {
+    /// # Errors
+    /// [`Error::Profile`] names the channel whose length cannot be.
+    pub(crate) fn validate(self) -> Result<(), Error> {
+        let Self::DiffuseMeanFreePath(lengths) = self else { return Ok(()) };
+        for (length, channel) in lengths.into_iter().zip(["red", "green", "blue"]) {
+            if !(length > 0.0 && length.is_finite()) {
+                return Err(Error::Profile {
+                    problem: format!("a diffuse mean free path of {length} mm in {channel}"),
+                    remedy: "give a finite length above 0",
+                });
+            }
+        }
+        Ok(())
+    }
+}
+
+/// R_d(r) = A/(8π d r)·(e^(−r/d) + e^(−r/3d)).
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Burley {
+    /// Albedo of the surface, 0..=1.
+    albedo: f64,
+    /// d, mm.
+    length: f64,
+}
+
+impl Burley {
+    /// `fit`: with the length of this channel, mm, where it is given.
+    pub fn new(channel: &Channel, fit: BurleyFit, index: usize) -> Self {
+        let entry = if fit == BurleyFit::Searchlight { Entry::Normal } else { Entry::Diffuse };
+        let albedo = albedo(channel.albedo(), entry);
+        let mean_free_path = 1.0 / channel.extinction();
+        let length = match fit {
+            BurleyFit::Searchlight => mean_free_path / (1.85 - albedo + 7.0 * (albedo - 0.8).abs().powi(3)),
+            BurleyFit::Diffuse => mean_free_path / (1.9 - albedo + 3.5 * (albedo - 0.8).powi(2)),
+            BurleyFit::DiffuseMeanFreePath(lengths) => {
+                f64::from(lengths[index]) / (3.5 + 100.0 * (albedo - 0.33).powi(4))
+            }
+        };
+        Self { albedo, length }
+    }
+}
+
+impl Radial for Burley {
+    fn decay(&self) -> f64 {
+        1.0 / (3.0 * self.length)
+    }
+
+    fn scaled_reflectance(&self, r: f64) -> f64 {
+        self.albedo * (1.0 + (-2.0 * self.decay() * r).exp()) / (8.0 * PI * self.length * r)
+    }
+
+    fn scaled_ring(&self, inner: f64, outer: f64) -> f64 {
+        let (slow, width) = (self.decay(), outer - inner);
+        let fast = 3.0 * slow;
+        let wide = -3.0 * (-slow * width).exp_m1();
+        let narrow = -(-fast * width).exp_m1() * (-2.0 * slow * inner).exp();
+        0.25 * self.albedo * (wide + narrow)
+    }
+
+    fn total(&self) -> f64 {
+        self.albedo
+    }
+
+    fn smooth_length(&self) -> f64 {
+        // 1/r has no core. With one of d the error of the dual scatter rose from 0.17 % to 0.74 %, with 2d to 10 %.
+        0.0
+    }
+}
