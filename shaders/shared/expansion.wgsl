@@ -49,7 +49,7 @@ fn profile_jet(table: KernelTable, texels: texture_2d<f32>, r2: f32, s2: f32, fa
     let fy = cell.share.y;
     var v: array<vec3f, 4>;
     for (var k = 0; k < 4; k++) {
-        let at = clamp(column + k - 1, 0, i32(table.columns) - 1);
+        let at = clamp(column + k - 1, 1, i32(table.columns));
         let facing_row = row + i32(table.rows);
         let lying = mix(textureLoad(texels, vec2i(at, row), 0).rgb, textureLoad(texels, vec2i(at, row + 1), 0).rgb, fy);
         let upright = mix(textureLoad(texels, vec2i(at, facing_row), 0).rgb, textureLoad(texels, vec2i(at, facing_row + 1), 0).rgb, fy);

@@ -1,5 +1,5 @@
 // The area-averaged profile: ln of the mean of R_d over a flat disc of rms radius s at distance r, RGB, ln(1/mm²).
-// Columns follow log2 r², rows log2 s², so that power laws are straight lines; the lower half of the texture holds the disc lying
+// Behind a first column of what texels send to themselves, columns follow log2 r², rows log2 s², so that power laws are straight lines; the lower half of the texture holds the disc lying
 // along r, the upper half the disc facing r.
 struct KernelTable {
     // Smallest r² and s², mm².
@@ -29,13 +29,16 @@ struct TableCell {
 fn table_cell(table: KernelTable, r2: f32, s2: f32) -> TableCell {
     let x = table_coordinate(r2, table.least_r2, R2_CELLS_PER_OCTAVE, table.columns);
     let y = table_coordinate(s2, table.least_s2, S2_CELLS_PER_OCTAVE, table.rows);
-    return TableCell(i32(x), i32(y), vec2f(x - floor(x), y - floor(y)));
+    return TableCell(i32(x) + 1, i32(y), vec2f(x - floor(x), y - floor(y)));
 }
 
 // r2: squared distance, mm²     s2: squared rms radius of the source, mm²
 // facing: squared cosine between the source's mean normal and the connecting line       returns 1/mm²
 fn area_averaged_profile(table: KernelTable, texels: texture_2d<f32>, r2: f32, s2: f32, facing: f32) -> vec3f {
-    let cell = table_cell(table, r2, s2);
+    return profile_in_cell(table, texels, table_cell(table, r2, s2), facing);
+}
+
+fn profile_in_cell(table: KernelTable, texels: texture_2d<f32>, cell: TableCell, facing: f32) -> vec3f {
     let column = cell.column;
     let row = cell.row;
     let fx = cell.share.x;

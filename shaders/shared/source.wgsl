@@ -5,10 +5,13 @@ override SCALED: bool = false;
 
 // own: whether the receiver is in the middle of the source
 fn received(table: KernelTable, offset: vec3f, lamp: Lamp, own: bool) -> vec3f {
-    let spread = lamp.spread * select(1.0, 1.0 / NEIGHBOUR_NARROWING, own);
     let c2 = scale_square(lamp);
-    let profile = area_averaged_profile(table, kernel_table, c2 * dot(offset, offset), c2 * spread * spread, facing(offset, lamp));
-    return lamp.power * (c2 * profile);
+    var cell = table_cell(table, c2 * dot(offset, offset), c2 * lamp.spread * lamp.spread);
+    if own {
+        cell.column = 0;
+        cell.share.x = 0.0;
+    }
+    return lamp.power * (c2 * profile_in_cell(table, kernel_table, cell, facing(offset, lamp)));
 }
 
 // With scattering c times as strong, R_d(r) becomes c²·R_d(c·r).

@@ -62,24 +62,51 @@ impl KernelTableLayout {
     }
 }
 
-/// `columns` × 2·`rows` texels of ln K̄: the lying half, then the facing half.
+/// One more than `columns` × 2·`rows` texels of ln K̄: the lying half, then the facing half, each behind a column of what texels send to
+/// themselves.
 pub(crate) fn build(layout: KernelTableLayout, channels: &Channels) -> Vec<[f32; 4]> {
-    let mut texels = Vec::with_capacity((layout.columns * layout.rows * 2) as usize);
+    let mut texels = Vec::with_capacity(((layout.columns + 1) * layout.rows * 2) as usize);
     let alike = |a: usize, b: usize| Arc::ptr_eq(&channels[a], &channels[b]);
     for average in [ln_lying as fn(&dyn Radial, f64, f64) -> f64, ln_facing] {
         for row in 0..layout.rows {
             let radius = layout.disc_radius(row.into());
-            for column in 0..layout.columns {
-                let r = layout.distance(column.into());
-                let ln = |k: usize| average(&*channels[k], r, radius).max(LN_NOTHING) as f32;
+            let mut push = |ln: &dyn Fn(&dyn Radial) -> f64| {
+                let ln = |k: usize| ln(&*channels[k]).max(LN_NOTHING) as f32;
                 let red = ln(0);
                 let green = if alike(0, 1) { red } else { ln(1) };
                 let blue = if alike(1, 2) { green } else { ln(2) };
                 texels.push([red, green, blue, 0.0]);
+            };
+            push(&|profile| ln_own(profile, radius));
+            for column in 0..layout.columns {
+                let r = layout.distance(column.into());
+                push(&|profile| average(profile, r, radius));
             }
         }
     }
     texels
+}
+
+/// How much narrower than a disc of its own area a texel looks to any other; as in `shared/cluster.wgsl`.
+const NEIGHBOUR_NARROWING: f64 = 0.945;
+/// Squares around a square, up to two away: how far they are in sides, and how many are as far.
+const AROUND: [(f64, f64); 5] = [
+    (1.0, 4.0),
+    (std::f64::consts::SQRT_2, 4.0),
+    (2.0, 4.0),
+    (2.236_067_977_499_79, 8.0),
+    (2.828_427_124_746_19, 4.0),
+];
+
+/// ln of the mean of R_d over a texel around the receiver itself, whose disc of radius `a` is what the others see: what a plane of squares
+/// has to send to the middle of one, less what the discs around it do. Discs overlap and leave gaps; here that is made up for, so that an
+/// evenly lit plane closes at any mean free path.
+fn ln_own(profile: &dyn Radial, a: f64) -> f64 {
+    let side = PI.sqrt() * a / NEIGHBOUR_NARROWING;
+    // From the middle of the block to its rim, over an eighth of the way around.
+    let block = integrate(&*GAUSS_12, |u| profile.enclosed(2.5 * side / (0.25 * PI * u).cos()));
+    let others: f64 = AROUND.iter().map(|(r, count)| count * ln_lying(profile, r * side, a).exp()).sum();
+    (block / (side * side) - others).max(0.0).ln()
 }
 
 /// ln of the mean of R_d over a disc of radius `a` that lies in the plane of the receiver, its centre at distance `r`.
@@ -146,6 +173,23 @@ mod tests {
             }
         }
         sum / f64::from(rings * spokes)
+    }
+
+    #[test]
+    fn wgsl_knows_the_same_narrowing() {
+        let line = format!("const NEIGHBOUR_NARROWING: f32 = {NEIGHBOUR_NARROWING};");
+        assert!(translume_shaders::CLUSTER.source.contains(&line));
+    }
+
+    /// Far below a texel all of its light comes back to it; far above, it is one of many alike.
+    #[test]
+    fn a_texel_sends_itself_what_is_left() {
+        let dipole = dipole(&Medium::MARBLE);
+        let area = |a: f64| PI * (a / NEIGHBOUR_NARROWING).powi(2);
+        let coarse = 1e3;
+        assert!((ln_own(&*dipole, coarse).exp() * area(coarse) / dipole.total() - 1.0).abs() < 2e-3);
+        let fine = 1e-3;
+        assert!((ln_own(&*dipole, fine) - dipole.scaled_reflectance(0.0).ln()).abs() < 1e-3);
     }
 
     #[test]
@@ -230,7 +274,8 @@ mod tests {
     fn interpolation_error(layout: KernelTableLayout, dipole: &Arc<dyn Radial>, shift: f64) -> f64 {
         let table = build(layout, &[(); 3].map(|()| Arc::clone(dipole)));
         let dipole = &**dipole;
-        let at = |row: u32, column: u32| f64::from(table[(row * layout.columns + column) as usize][0]);
+        let at =
+            |row: u32, column: u32| f64::from(table[(row * (layout.columns + 1) + column + 1) as usize][0]);
         let mut worst = 0.0_f64;
         for row in 0..layout.rows - 1 {
             for column in 0..layout.columns - 1 {

@@ -30,7 +30,7 @@ impl KernelTexture {
         let relative_spread = spread / mesh.diagonal().max(f32::MIN_POSITIVE);
         let KernelTableLayout { columns, rows, .. } = KernelTableLayout::new(range(1.0, relative_spread));
         let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
-        let texture = gpu::float_texture(device, "kernel table", (columns, 2 * rows), usage);
+        let texture = gpu::float_texture(device, "kernel table", (columns + 1, 2 * rows), usage);
         let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
         Self { texture, view, relative_spread, columns, rows, diagonal: 0.0 }
     }
@@ -51,7 +51,7 @@ impl KernelTexture {
         let texels = kernel_table::build(table, channels);
         let rows = wgpu::TexelCopyBufferLayout {
             offset: 0,
-            bytes_per_row: Some(16 * table.columns),
+            bytes_per_row: Some(16 * (table.columns + 1)),
             rows_per_image: None,
         };
         queue.write_texture(
