@@ -72,6 +72,9 @@ pub const DUAL: Shader = shader!(
     "shared/lists.wgsl",
     "dual.wgsl"
 );
+/// The same from a fixed pattern of the atlas, for comparison.
+pub const PATTERN: Shader =
+    shader!("pattern", "shared/dispatch.wgsl", "shared/kernel_table.wgsl", "pattern.wgsl");
 /// Dense texels → texture.
 pub const RESOLVE: Shader = shader!("resolve", "resolve.wgsl");
 /// The camera pass.
@@ -88,8 +91,8 @@ pub const COMPOSITE: Shader = shader!(
 );
 
 /// Every module, in the order light flows through them.
-pub const ALL: [Shader; 10] =
-    [DEFORM, NORMALS, VISIBILITY, SHADOW, GATHER, CLUSTER, SCATTER, DUAL, RESOLVE, COMPOSITE];
+pub const ALL: [Shader; 11] =
+    [DEFORM, NORMALS, VISIBILITY, SHADOW, GATHER, CLUSTER, SCATTER, DUAL, PATTERN, RESOLVE, COMPOSITE];
 
 /// WGSL functions for a host's own material: `translume_exitance(texture, uv)` samples radiant exitance B, and
 /// `fresnel_transmittance(eta, cosine)` weighs what leaves towards the eye: L = F_t·B/π.

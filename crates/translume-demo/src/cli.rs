@@ -70,7 +70,8 @@ pub struct Render {
     /// Diffuse profile: dipole (the paper's formula to the letter) or dipole-normalised.
     #[arg(long, value_name = "NAME", default_value = "dipole-normalised")]
     pub profile: String,
-    /// How the scatter sum is evaluated: dual (groups of texels at both ends), tree (each texel by itself), or all-pairs (exact and slow).
+    /// How the scatter sum is evaluated: dual (groups of texels at both ends), tree (each texel by itself), all-pairs (exact and slow), or
+    /// pattern (57 samples around a texel of the atlas, tens of percent off: for comparison).
     #[arg(long, value_name = "NAME", default_value = "dual")]
     pub method: String,
     /// Opening angle of dual (by default 0.75) or tree (0.4); smaller is more accurate.

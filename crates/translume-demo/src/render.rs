@@ -121,9 +121,10 @@ fn method(arguments: &Render) -> Result<Method, Error> {
         "dual" => Ok(arguments.theta.map_or(Method::default(), |theta| Method::Dual { theta })),
         "tree" => Ok(Method::Tree { theta: arguments.theta.unwrap_or(0.4) }),
         "all-pairs" => Ok(Method::AllPairs),
+        "pattern" => Ok(Method::Pattern),
         other => Err(Error::Option {
             option: "--method",
-            problem: format!("no method is called \"{other}\"; known are dual, tree, all-pairs"),
+            problem: format!("no method is called \"{other}\"; known are dual, tree, all-pairs, pattern"),
         }),
     }
 }

@@ -16,6 +16,7 @@ use crate::stages::cluster::Tree;
 use crate::stages::deform::DeformGroups;
 use crate::stages::gather::Kinds;
 use crate::stages::scatter::dual::{self, DualMemory};
+use crate::stages::scatter::pattern::{PatternMemory, Plan};
 use crate::stages::scatter::{Method, Scatter};
 use crate::stages::shadow::DepthMaps;
 use crate::stages::visibility::SkyMemory;
@@ -46,6 +47,8 @@ pub struct Body {
     list_entries: u32,
     /// Made for the first frame whose method needs it.
     dual: Option<DualMemory>,
+    plan: Plan,
+    pattern: Option<PatternMemory>,
     model: Mat4,
     /// [`Profile::exit_scale`] of profile and medium: an integral too long for every picture.
     pub(crate) exit_scale: f32,
@@ -121,6 +124,8 @@ impl Body {
             method,
             list_entries: descriptor.list_entries,
             dual: None,
+            plan: Plan::new(atlas, mm_per_unit),
+            pattern: None,
             model: Mat4::IDENTITY,
             exit_scale: profile.exit_scale(medium.ior),
             pose: Pose::rest(&extent),
@@ -382,6 +387,11 @@ impl Body {
                 stage.memory(device, &self.buffers, &self.kernel.view, tree, self.list_entries)
             });
             memory.write(queue, &layout, &self.tree, theta);
+        }
+        if self.method == Method::Pattern {
+            let (buffers, view, plan) = (&self.buffers, &self.kernel.view, &self.plan);
+            let memory = self.pattern.get_or_insert_with(|| PatternMemory::new(device, buffers, view, plan));
+            memory.write(queue, plan, table, &channels);
         }
         let uniforms = Scatter::uniforms(layout);
         queue.write_buffer(&self.buffers.scatter_uniforms, 0, &uniforms);

@@ -238,7 +238,7 @@ pub struct Outputs<'a> {
     /// Clusters of every level above the texels.
     pub clusters: &'a wgpu::Buffer,
     /// Radiant exitance B of each texel, RGB; from [`Method::Dual`](crate::Method::Dual) with the number of kernel evaluations, where a
-    /// group's are shared out among its texels.
+    /// group's are shared out among its texels; from [`Method::Pattern`](crate::Method::Pattern) with the number of samples that hit a surface.
     pub exitance: &'a wgpu::Buffer,
     /// Once [`Method::Dual`](crate::Method::Dual) was used: its lists of open sources. The first word is how many words they
     /// would have filled, the second how many groups of receivers found no room. Those do not err, but take longer: their texels

@@ -19,6 +19,7 @@ mod hard_cases;
 mod hard_light;
 mod irradiance;
 mod layout;
+mod pattern;
 mod scatter;
 mod shadow;
 mod sky;

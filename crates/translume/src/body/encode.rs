@@ -101,10 +101,11 @@ impl Body {
         }
         if pending.contains(Stage::Scatter) {
             let mut pass = Pass::begin(encoder, "scatter", &mut work);
-            match (&self.dual, self.method) {
-                (Some(memory), Method::Dual { .. }) => {
+            match (&self.dual, &self.pattern, self.method) {
+                (Some(memory), _, Method::Dual { .. }) => {
                     stages.scatter.dual.encode(&mut pass, memory, &self.tree);
                 }
+                (_, Some(memory), Method::Pattern) => memory.encode(&mut pass, texels),
                 _ => stages.scatter.encode(&mut pass, &self.scatter_group, self.method, texels),
             }
         }
