@@ -1,0 +1,24 @@
+//! Methods in words.
+
+use translume::Method;
+
+/// As in the tables.
+pub fn words(method: Method) -> String {
+    match method {
+        Method::AllPairs => "all pairs".to_owned(),
+        Method::Tree { theta } => format!("tree {theta}"),
+        Method::Dual { theta } => format!("dual {theta}"),
+        Method::Pattern => "pattern".to_owned(),
+        other => format!("{other:?}"),
+    }
+}
+
+/// The error a method aims at, for methods that aim at one.
+pub fn tolerance(_: Method) -> Option<f64> {
+    None
+}
+
+/// Whether the fourth number of an exitance says how many kernels were evaluated for it.
+pub fn counts(method: Method) -> bool {
+    !matches!(method, Method::AllPairs | Method::Tree { .. })
+}
