@@ -7,6 +7,7 @@ use super::row::{Case, Part, Row};
 use super::scene::{Kind, Scene};
 use crate::error::Error;
 use crate::report::twin::Twin;
+use std::time::Instant;
 use translume::{Medium, Method};
 use translume_reference::gather::Source;
 
@@ -26,13 +27,22 @@ pub fn measure(study: &Study<'_>, kind: &Kind, rows: &mut Vec<Row>) -> Result<()
             if plan.sizes.contains(&size) {
                 let stride = plan.stride(sources.len(), plan.samples);
                 let receivers = (0..sources.len()).step_by(stride).collect();
+                let start = Instant::now();
                 let judge = Judge::all_pairs(&sources, &medium, receivers);
+                let judged = start.elapsed();
                 compare(study, &mut bench, &case, (Part::AllPairs, &judge), &plan.methods, rows)?;
+                log::info!(
+                    "{} {size} {name}: all pairs {judged:.1?}, all {:.1?}",
+                    scene.name,
+                    start.elapsed()
+                );
                 study.bar.inc(1);
             }
+            let start = Instant::now();
             let judge = converged(study, &twin, &scene, &sources, &medium);
             let methods = [Method::default(), Method::Pattern];
             compare(study, &mut bench, &case, (Part::Converged, &judge), &methods, &mut total)?;
+            log::info!("{} {size} {name}: converged {:.1?}", scene.name, start.elapsed());
             study.bar.inc(1);
         }
     }
