@@ -1,11 +1,11 @@
 //! What should come out, at some of the texels.
 
+use super::all_pairs;
 use crate::report::twin::Twin;
 use translume::{Light, Medium};
 use translume_reference::converged::Converged;
 use translume_reference::gather::Source;
 use translume_reference::metrics::{self, Metrics};
-use translume_reference::scatter;
 
 /// Light is cast onto patches no longer than this, mm; it varies slowly, as nothing casts shadows.
 const EDGE: f64 = 1.0;
@@ -19,7 +19,7 @@ pub struct Judge {
 impl Judge {
     /// The sum over all texels, in double precision.
     pub fn all_pairs(sources: &[Source], medium: &Medium, receivers: Vec<usize>) -> Self {
-        let exact = scatter::all_pairs(sources, &twin(medium).dipoles(), &receivers);
+        let exact = all_pairs::exitance(sources, &twin(medium).dipoles(), &receivers);
         Self { receivers, exact }
     }
 

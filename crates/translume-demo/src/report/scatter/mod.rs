@@ -1,6 +1,7 @@
 //! The suite `scatter`: radiant exitance by every method, its error beside its cost.
 
 mod accuracy;
+mod all_pairs;
 mod bench;
 mod bounds;
 mod judge;
