@@ -86,7 +86,7 @@ mod tests {
         for dipole in DIPOLES.map(|make| make()) {
             for r in [0.0, 0.1, 0.3, 1.0, 3.0, 10.0].map(|r| r * dipole.z[0]) {
                 for a in [0.01, 0.03, 0.1, 0.3, 0.6, 1.0, 2.0].map(|a| a * dipole.z[0]) {
-                    let (lying, facing) = scatter::disc_average(&dipole, r, a);
+                    let (lying, facing) = disc_average(&dipole, r, a);
                     let [found_lying, found_facing] = averages(&dipole, r, a, large);
                     worst =
                         worst.max((found_lying / lying - 1.0).abs()).max((found_facing / facing - 1.0).abs());

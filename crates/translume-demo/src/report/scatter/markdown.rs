@@ -127,14 +127,15 @@ twisted model turns by 90° from foot to top. Nothing casts shadows. Sources are
 - **overflow**: groups of texels that found no room in the lists of the dual scatter.
 - **Light that comes through**: a slab of 4 mm lit from below and a model lit from behind, at those texels that no light reaches and below which the body is thinnest (the thinnest
   tenth of them), against the integral.
-- **ms**: the scatter stage alone, from submission until the device is idle, median of {timed}. **growth**: for four times as many texels, from the next smaller atlas.
+- **ms**: the scatter stage alone, from submission until the device is idle, median of {few}, of {many} under Times, fewer where two seconds have gone by. **growth**: for four times as many texels, from the next smaller atlas.
   All pairs were timed once, up to {measured}²; ≈ follows from that by the square of the number of texels.
 - **pattern**: 7 × 7 samples in a square of the atlas and eight squares like that around it (Gong et al. 2008); the square reaches 5 mean free paths to each side, where its error is least.
 
 ",
         all = texels(plan.samples),
         total = texels(plan.converged_samples),
-        timed = plan.repeats.timed,
+        few = plan.repeats.timed,
+        many = plan.times_repeats.timed,
         measured = plan.all_pairs_sizes.iter().max().copied().unwrap_or(0),
     )
 }

@@ -26,6 +26,8 @@ pub struct Plan {
     /// Every so manieth texel instead.
     pub every: Option<usize>,
     pub repeats: Repeats,
+    /// Where times alone count.
+    pub times_repeats: Repeats,
 }
 
 impl Plan {
@@ -65,7 +67,12 @@ impl Plan {
             samples: if quick { 100 } else { 320 },
             converged_samples: if quick { 30 } else { 120 },
             every: arguments.every.map(|every| every as usize),
-            repeats: if quick { Repeats { warm_up: 0, timed: 1 } } else { Repeats { warm_up: 1, timed: 3 } },
+            repeats: Repeats { warm_up: 0, timed: if quick { 1 } else { 3 } },
+            times_repeats: if quick {
+                Repeats { warm_up: 0, timed: 1 }
+            } else {
+                Repeats { warm_up: 1, timed: 5 }
+            },
         }
     }
 

@@ -21,7 +21,7 @@ pub fn measure(study: &Study<'_>, rows: &mut Vec<Row>) -> Result<(), Error> {
         bench.set_medium(Medium::preset(medium)?)?;
         let case = Case { scene: &scene.name, atlas: size, medium, profile: bench.profile() };
         for method in [Method::default(), Method::Tree { theta: 0.4 }, Method::Pattern] {
-            let run = bench.run(method, plan.repeats)?;
+            let run = bench.run(method, plan.times_repeats)?;
             times.push(Row::new(Part::Times, &case, method, &run));
         }
         if plan.all_pairs_sizes.contains(&size) {

@@ -7,7 +7,7 @@ use super::{Study, accuracy};
 use crate::error::Error;
 use crate::report::twin::Twin;
 use glam::DVec3;
-use translume::{Medium, Method};
+use translume::Medium;
 use translume_reference::Surface;
 use translume_reference::gather::Source;
 
@@ -32,8 +32,9 @@ pub fn measure(study: &Study<'_>, rows: &mut Vec<Row>) -> Result<(), Error> {
             let receivers = thin.into_iter().step_by(stride).collect();
             let judge = Judge::converged(&twin, &scene.lights, &sources, &medium, receivers);
             let case = Case { scene: &scene.name, atlas: size, medium: name, profile: bench.profile() };
-            let methods = [Method::default(), Method::Pattern];
-            accuracy::compare(study, &mut bench, &case, (Part::Transmitted, &judge), &methods, rows)?;
+            let methods = accuracy::best_and_pattern();
+            let runs = accuracy::run_all(study, &mut bench, &methods)?;
+            accuracy::compare(&case, (Part::Transmitted, &judge), &runs, &methods, rows);
             study.bar.inc(1);
         }
     }
