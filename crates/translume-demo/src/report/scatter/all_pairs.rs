@@ -13,6 +13,8 @@ use translume_reference::scatter::disc_average;
 const LARGE: f64 = 0.35;
 /// Below this, three points are as good.
 const SMALL: f64 = 0.1;
+/// And below this, one; it is where most pairs are.
+const TINY: f64 = 0.01;
 /// Light that had to go so many decay lengths counts for nothing: e⁻³⁰ is 10⁻¹³.
 const FAINT: f64 = 30.0;
 /// A texel looks narrower to others than its own area; as in `translume_reference::scatter`.
@@ -48,6 +50,9 @@ fn averages(dipole: &Dipole, r: f64, a: f64, large: f64) -> [f64; 2] {
     let size = a * (1.0 / distance + dipole.sigma_tr);
     if size > large {
         return disc_average(dipole, r, a).into();
+    }
+    if size < TINY {
+        return [dipole.reflectance(r); 2];
     }
     let beside = |along: f64, across2: f64| {
         let near = r + along;
@@ -85,7 +90,7 @@ mod tests {
         let mut worst = 0.0_f64;
         for dipole in DIPOLES.map(|make| make()) {
             for r in [0.0, 0.1, 0.3, 1.0, 3.0, 10.0].map(|r| r * dipole.z[0]) {
-                for a in [0.01, 0.03, 0.1, 0.3, 0.6, 1.0, 2.0].map(|a| a * dipole.z[0]) {
+                for a in [0.009, 0.03, 0.1, 0.3, 0.6, 1.0, 2.0].map(|a| a * dipole.z[0]) {
                     let (lying, facing) = disc_average(&dipole, r, a);
                     let [found_lying, found_facing] = averages(&dipole, r, a, large);
                     worst =

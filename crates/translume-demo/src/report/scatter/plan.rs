@@ -48,7 +48,7 @@ impl Plan {
         let methods = if quick {
             vec![Method::default(), tree, Method::Pattern]
         } else {
-            vec![dual(0.6), Method::default(), dual(1.0), dual(1.4), tree, Method::Pattern]
+            vec![dual(0.6), Method::default(), dual(1.0), tree, Method::Pattern]
         };
         Self {
             scenes,
