@@ -69,3 +69,43 @@ from atlas {GAIN_ATLAS}² on; no overflow. Other lines have no bound (–).
         100.0 * TRANSMITTED,
     )
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::scatter::row::Speed;
+
+    fn row(part: Part, relative_rmse: f64, bias: f64) -> Row {
+        let figures = Metrics { relative_rmse, bias, p99: 0.0, relative_p99: 0.02, count: 9 };
+        Row { figures: Some(figures), overflow: Some(0), ..Row::example(part, Method::default()) }
+    }
+
+    #[test]
+    fn what_breaks_a_bound_is_named() {
+        assert_eq!(words(&row(Part::AllPairs, 0.009, -0.002)), "yes");
+        assert_eq!(words(&row(Part::AllPairs, 0.011, -0.004)), "no: error, bias");
+        assert_eq!(words(&row(Part::AllPairs, f64::NAN, 0.0)), "no: error");
+        let full = Row { overflow: Some(3), pairs: Some(41.0), ..row(Part::AllPairs, 0.0, 0.0) };
+        assert_eq!(words(&full), "no: evaluations, overflow");
+        assert_eq!(words(&row(Part::Transmitted, 9.0, -0.029)), "yes");
+        assert_eq!(words(&row(Part::Transmitted, 0.0, -0.031)), "no: mean");
+    }
+
+    #[test]
+    fn slow_growth_and_large_gains_are_promised() {
+        let times = |growth, gain, atlas| {
+            let speed = Speed { growth: Some(growth), gain: Some(gain), extrapolated: false };
+            words(&Row { speed, atlas, ..Row::example(Part::Times, Method::default()) })
+        };
+        assert_eq!(times(4.9, 201.0, 512), "yes");
+        assert_eq!(times(5.1, 199.0, 512), "no: growth, speed");
+        assert_eq!(times(4.9, 20.0, 256), "yes");
+    }
+
+    #[test]
+    fn other_methods_promise_nothing() {
+        let dark = Row { method: Method::Pattern, ..row(Part::AllPairs, 1.0, -1.0) };
+        assert_eq!(words(&dark), "–");
+        assert_eq!(words(&row(Part::Converged, 1.0, -1.0)), "–");
+    }
+}

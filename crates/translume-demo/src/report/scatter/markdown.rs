@@ -130,6 +130,7 @@ twisted model turns by 90° from foot to top. Nothing casts shadows. Sources are
 - **ms**: the scatter stage alone, from submission until the device is idle, median of {few}, of {many} under Times, fewer where two seconds have gone by. **growth**: for four times as many texels, from the next smaller atlas.
   All pairs were timed once, up to {measured}²; ≈ follows from that by the square of the number of texels.
 - **pattern**: 7 × 7 samples in a square of the atlas and eight squares like that around it (Gong et al. 2008); the square reaches 5 mean free paths to each side, where its error is least.
+  Its kernel is the dipole of a point, so it explodes where mean free paths are far below a texel (spectralon).
 
 ",
         all = texels(plan.samples),

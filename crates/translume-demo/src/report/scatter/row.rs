@@ -73,6 +73,14 @@ impl Row {
         }
     }
 
+    /// For tests: no figures, no time.
+    #[cfg(test)]
+    pub fn example(part: Part, method: Method) -> Self {
+        let case = Case { scene: "egg, raw", atlas: 512, medium: "wax", profile: Profile::default() };
+        let run = Run { exitance: vec![[1.0, 1.0, 1.0, 30.0]; 2], time_ms: 1.0, overflow: None };
+        Self::new(part, &case, method, &run)
+    }
+
     /// The scene, and what it is measured against where that is not all pairs.
     fn title(&self) -> String {
         let more = match self.part {
@@ -122,4 +130,20 @@ pub fn csv(rows: &[Row], adapter: &str) -> String {
         text.push('\n');
     }
     text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_not_known_is_empty() {
+        let rows =
+            [Row::example(Part::AllPairs, Method::default()), Row::example(Part::Times, Method::AllPairs)];
+        let text = csv(&rows, "soft");
+        let lines: Vec<&str> = text.lines().skip(1).collect();
+        let profile = "wax,dipole-normalised";
+        assert_eq!(lines[0], format!("\"egg, raw\",512,{profile},dual 0.75,,30.00,,,,1.0000,,soft"));
+        assert_eq!(lines[1], format!("\"egg, raw times\",512,{profile},all pairs,,2.00,,,,1.0000,,soft"));
+    }
 }

@@ -65,23 +65,9 @@ fn speed(rows: &[Row], row: &Row) -> Speed {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use translume::Profile;
 
     fn row(method: Method, atlas: u32, texels: usize, time_ms: f64) -> Row {
-        Row {
-            part: Part::Times,
-            scene: "egg".to_owned(),
-            atlas,
-            texels,
-            medium: "wax",
-            profile: Profile::default(),
-            method,
-            pairs: None,
-            figures: None,
-            time_ms,
-            overflow: None,
-            speed: Speed::default(),
-        }
+        Row { atlas, texels, time_ms, ..Row::example(Part::Times, method) }
     }
 
     #[test]
