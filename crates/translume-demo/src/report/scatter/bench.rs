@@ -1,5 +1,6 @@
 //! A body whose frames end with the scatter, and a stopwatch.
 
+use super::method;
 use super::scene::Scene;
 use crate::error::Error;
 use crate::gpu::Gpu;
@@ -85,12 +86,9 @@ impl<'a> Bench<'a> {
             }
         }
         let outputs = self.body.outputs();
-        let overflow = match (method, outputs.lists) {
-            (Method::Dual { .. }, Some(lists)) => {
-                readback::buffer::<u32>(&self.gpu.device, &self.gpu.queue, lists)?.get(1).copied()
-            }
-            _ => None,
-        };
+        let lists = outputs.lists.filter(|_| method::has_lists(method));
+        let words = lists.map(|lists| readback::buffer::<u32>(&self.gpu.device, &self.gpu.queue, lists));
+        let overflow = words.transpose()?.and_then(|words| words.get(1).copied());
         Ok(Run { exitance: self.read(outputs.exitance)?, time_ms: median(times), overflow })
     }
 

@@ -95,7 +95,7 @@ mod tests {
     fn slow_growth_and_large_gains_are_promised() {
         let times = |growth, gain, atlas| {
             let speed = Speed { growth: Some(growth), gain: Some(gain), extrapolated: false };
-            words(&Row { speed, atlas, ..Row::example(Part::Times, Method::default()) })
+            words(&Row { atlas, speed, ..Row::example(Part::Times, Method::default()) })
         };
         assert_eq!(times(4.9, 201.0, 512), "yes");
         assert_eq!(times(5.1, 199.0, 512), "no: growth, speed");

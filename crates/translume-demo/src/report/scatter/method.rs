@@ -22,3 +22,8 @@ pub fn tolerance(_: Method) -> Option<f64> {
 pub fn counts(method: Method) -> bool {
     !matches!(method, Method::AllPairs | Method::Tree { .. })
 }
+
+/// Whether open sources wait in lists, which may overflow.
+pub fn has_lists(method: Method) -> bool {
+    counts(method) && method != Method::Pattern
+}
