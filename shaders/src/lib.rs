@@ -118,6 +118,9 @@ pub const VERTICES: Shader = shader!(
     "shared/point.wgsl",
     "vertices.wgsl"
 );
+/// The same from a fixed pattern of the atlas, for comparison.
+pub const PATTERN: Shader =
+    shader!("pattern", "shared/dispatch.wgsl", "shared/kernel_table.wgsl", "pattern.wgsl");
 /// Dense texels → texture.
 pub const RESOLVE: Shader = shader!("resolve", "resolve.wgsl");
 /// The camera pass.
@@ -139,7 +142,7 @@ pub const COMPOSITE_FRAGMENTS: Shader = composite!(
 );
 
 /// Every module, in the order light flows through them.
-pub const ALL: [Shader; 14] = [
+pub const ALL: [Shader; 15] = [
     DEFORM,
     NORMALS,
     VISIBILITY,
@@ -150,6 +153,7 @@ pub const ALL: [Shader; 14] = [
     DUAL,
     DUAL_ORIENTED,
     VERTICES,
+    PATTERN,
     RESOLVE,
     COMPOSITE,
     COMPOSITE_VERTICES,

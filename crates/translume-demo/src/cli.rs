@@ -17,6 +17,7 @@ Examples:
   translume inspect bunny.obj --json
   translume inspect creature teapot bunny.obj --table                  a line for each
   translume report --suite gather -o report                            error beside time of every kind of light
+  translume report --suite scatter -o report                           and of every method
 
 MODEL is an OBJ, glTF or GLB file, or a built-in: sphere, torus-knot, teapot, creature.
 RUST_LOG=info shows what wgpu has to say; WGPU_ADAPTER_NAME picks an adapter.";
@@ -72,7 +73,8 @@ pub struct Render {
     /// normalised-diffusion-searchlight; a dipole, the better one or photon-beam with -single adds light scattered once.
     #[arg(long, value_name = "NAME", default_value = "dipole-normalised")]
     pub profile: String,
-    /// How the scatter sum is evaluated: dual (groups of texels at both ends), tree (each texel by itself), or all-pairs (exact and slow).
+    /// How the scatter sum is evaluated: dual (groups of texels at both ends), tree (each texel by itself), all-pairs (exact and slow), or
+    /// pattern (57 samples around a texel of the atlas, tens of percent off: for comparison).
     #[arg(long, value_name = "NAME", default_value = "dual")]
     pub method: String,
     /// Error that dual keeps within: root mean square over the mean.
@@ -179,23 +181,24 @@ pub struct Inspect {
 /// `translume report`.
 #[derive(Debug, Args)]
 pub struct Report {
-    /// What to measure: gather (irradiance in every kind of light); a wrong name lists them all.
+    /// What to measure: gather (irradiance in every kind of light) or scatter (exitance by every method); a wrong name lists them all.
     #[arg(long, value_name = "NAME")]
     pub suite: String,
     /// OBJ, glTF or GLB files, or the names of built-in models, separated by commas. By default the creature, and
-    /// stanford-bunny.obj where the folder that TRANSLUME_MODELS names has it.
+    /// stanford-bunny.obj where the folder that TRANSLUME_MODELS names has it; scatter then twists its spot.obj too.
     #[arg(long, value_name = "MODEL,…", value_delimiter = ',')]
     pub models: Vec<String>,
-    /// Width of the atlas in texels.
+    /// Width of the atlas in texels; scatter also takes a quarter, a half and twice of that.
     #[arg(long, value_name = "N", default_value_t = 512)]
     pub atlas: u32,
-    /// The reference looks at every Nth texel, by default 7, quickly 31. Texels come in groups of four, so odd numbers are fairer.
+    /// The reference looks at every Nth texel: of gather by default 7, quickly 31; of scatter as many as give some hundred texels. Texels
+    /// come in groups of four, so odd numbers are fairer.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=65536))]
     pub every: Option<u32>,
     /// Fewer settings, fewer repetitions.
     #[arg(long)]
     pub quick: bool,
-    /// Folder to write gather.csv, gather.md and gather.svg to; it is made where there is none.
+    /// Folder to write SUITE.csv, SUITE.md and SUITE.svg to; it is made where there is none.
     #[arg(short, long, value_name = "DIR")]
     pub output: PathBuf,
 }

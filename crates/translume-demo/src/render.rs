@@ -135,9 +135,10 @@ fn method(arguments: &Render) -> Result<Method, Error> {
         }
         "tree" => Ok(Method::Tree { theta: angle.unwrap_or(0.4) }),
         "all-pairs" => Ok(Method::AllPairs),
+        "pattern" => Ok(Method::Pattern),
         other => Err(Error::Option {
             option: "--method",
-            problem: format!("no method is called \"{other}\"; known are dual, tree, all-pairs"),
+            problem: format!("no method is called \"{other}\"; known are dual, tree, all-pairs, pattern"),
         }),
     }
 }

@@ -32,7 +32,7 @@ pub fn all_pairs<P: Profile>(sources: &[Source], profiles: &[P; 3], receivers: &
         for (index, source) in &lit {
             let power = source.power();
             let kernel = if *index == receiver {
-                std::array::from_fn(|k| own_kernel(&profiles[k], source.spread()))
+                std::array::from_fn(|k| own_average(&profiles[k], source.spread()))
             } else {
                 averaged_kernel(profiles, at, source)
             };
@@ -45,7 +45,8 @@ pub fn all_pairs<P: Profile>(sources: &[Source], profiles: &[P; 3], receivers: &
 
 /// Mean of R_d, 1/mm², over a texel of rms radius `spread` around the receiver itself, as what an evenly lit plane of such squares has to send
 /// there less what the discs of its neighbours do: with 5 × 5 squares, the rest being smooth. It makes up for the gaps and overlaps of discs.
-fn own_kernel<P: Profile>(profile: &P, spread: f64) -> f64 {
+#[must_use]
+pub fn own_average<P: Profile>(profile: &P, spread: f64) -> f64 {
     const STEPS: u32 = 64;
     let side = (2.0 * PI).sqrt() * spread;
     if side * side < f64::MIN_POSITIVE {

@@ -19,6 +19,7 @@ use crate::stages::cluster::Tree;
 use crate::stages::deform::DeformGroups;
 use crate::stages::gather::Kinds;
 use crate::stages::scatter::dual::{self, Demand, DualMemory};
+use crate::stages::scatter::pattern::{PatternMemory, Plan};
 use crate::stages::scatter::{Method, Scatter};
 use crate::stages::shadow::DepthMaps;
 use crate::stages::visibility::SkyMemory;
@@ -65,6 +66,8 @@ pub struct Body {
     marks: Vec<u32>,
     /// Of [`Variation::scale`].
     greatest_scale: f32,
+    plan: Plan,
+    pattern: Option<PatternMemory>,
     model: Mat4,
     /// [`Profile::exit_scale`] of profile and medium: an integral too long for every picture.
     pub(crate) exit_scale: f32,
@@ -153,6 +156,8 @@ impl Body {
             kind: MediumKind::default(),
             marks: standing.marks,
             greatest_scale: 1.0,
+            plan: Plan::new(atlas, mm_per_unit),
+            pattern: None,
             model: Mat4::IDENTITY,
             exit_scale: profile.exit_scale(medium.ior),
             pose: Pose::rest(&extent),
@@ -479,6 +484,11 @@ impl Body {
                 .get_or_insert_with(|| stage.memory(device, &self.buffers, &self.kernel.view, tree, demand));
             memory.kind = self.kind;
             memory.write(queue, &layout, tree, theta);
+        }
+        if self.method == Method::Pattern {
+            let (buffers, view, plan) = (&self.buffers, &self.kernel.view, &self.plan);
+            let memory = self.pattern.get_or_insert_with(|| PatternMemory::new(device, buffers, view, plan));
+            memory.write(queue, plan, self.table, &self.medium);
         }
         let uniforms = Scatter::uniforms(layout);
         queue.write_buffer(&self.buffers.scatter_uniforms, 0, &uniforms);

@@ -252,7 +252,7 @@ pub struct Outputs<'a> {
     /// Clusters of every level above the texels.
     pub clusters: &'a wgpu::Buffer,
     /// Radiant exitance B of each texel, RGB; from [`Method::Dual`](crate::Method::Dual) with the number of kernel evaluations, where a
-    /// group's are shared out among its texels.
+    /// group's are shared out among its texels; from [`Method::Pattern`](crate::Method::Pattern) with the number of samples that hit a surface.
     pub exitance: &'a wgpu::Buffer,
     /// With [`Evaluate::PerVertex`](crate::Evaluate::PerVertex): radiant exitance B of each vertex, RGB, and kernel evaluations.
     pub vertex_exitance: Option<&'a wgpu::Buffer>,

@@ -266,6 +266,19 @@ pub(crate) struct ScatterLayout {
 
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub(crate) struct PatternLayout {
+    pub table: KernelTableLayout,
+    pub texel_count: u32,
+    pub size: u32,
+    pub near_step: f32,
+    pub far_step: f32,
+    pub near_area: f32,
+    pub far_area: f32,
+    pub padding: [u32; 2],
+}
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub(crate) struct CompositeLayout {
     pub view_projection: [[f32; 4]; 4],
     pub eye: [f32; 3],
@@ -409,6 +422,12 @@ mod tests {
             "Scatter",
             ScatterLayout,
             [table, texel_count, first_source, source_count, top_level, theta_squared, z_r_squared, sources]
+        );
+        check!(
+            PATTERN,
+            "Pattern",
+            PatternLayout,
+            [table, texel_count, size, near_step, far_step, near_area, far_area]
         );
         assert_eq!(
             u64::from(naga_layout(translume_shaders::DUAL.source, "Expansion").1),

@@ -11,7 +11,7 @@ use translume::{
 };
 
 /// After so long no repetition begins: what is slow needs few.
-const PATIENCE: Duration = Duration::from_secs(2);
+pub const PATIENCE: Duration = Duration::from_secs(2);
 
 pub struct Bench<'a> {
     gpu: &'a Gpu,

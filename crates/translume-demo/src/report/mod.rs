@@ -1,10 +1,13 @@
 //! `translume report`: measures the library against the CPU reference and writes tables and a plot.
 
+mod axis;
 mod bench;
+mod csv;
 mod date;
 mod flicker;
 mod gather;
 mod plot;
+mod scatter;
 mod scenes;
 mod subject;
 mod table;
@@ -21,9 +24,10 @@ const IOR: f32 = 1.3;
 pub fn run(arguments: &Report) -> Result<(), Error> {
     match arguments.suite.as_str() {
         "gather" => gather::run(arguments),
+        "scatter" => scatter::run(arguments),
         other => Err(Error::Option {
             option: "--suite",
-            problem: format!("no suite is called \"{other}\"; known are gather"),
+            problem: format!("no suite is called \"{other}\"; known are gather, scatter"),
         }),
     }
 }

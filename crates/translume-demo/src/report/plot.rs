@@ -1,5 +1,6 @@
 //! Error against time.
 
+use super::axis::{COLOURS, decades, range, rounded};
 use super::table::Row;
 use super::trials::Sweep;
 use plotters::coord::Shift;
@@ -11,10 +12,6 @@ const SWEEPS: [(Sweep, &str); 3] = [
     (Sweep::Filter, "filter"),
     (Sweep::Samples, "points or directions"),
 ];
-
-/// Four that a colour-blind eye tells apart. Source: Okabe and Ito, "Color Universal Design".
-const COLOURS: [RGBColor; 4] =
-    [RGBColor(0, 114, 178), RGBColor(213, 94, 0), RGBColor(0, 158, 115), RGBColor(204, 121, 167)];
 
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 /// One light with ever finer settings: ms and relative error.
@@ -95,21 +92,4 @@ fn draw(
         .background_style(WHITE.mix(0.8))
         .border_style(BLACK)
         .draw()
-}
-
-/// Around all values, with some room.
-fn range(values: impl Iterator<Item = f64>) -> std::ops::Range<f64> {
-    let (low, high) = values.fold((f64::INFINITY, 0.0_f64), |(low, high), x| (low.min(x), high.max(x)));
-    if low > high { 0.1..10.0 } else { 0.7 * low..1.4 * high }
-}
-
-/// Powers of ten around a range: without one an axis would have no figures.
-fn decades(range: std::ops::Range<f64>) -> std::ops::Range<f64> {
-    10.0_f64.powf(range.start.log10().floor())..10.0_f64.powf(range.end.log10().ceil())
-}
-
-/// To three digits.
-fn rounded(value: f64) -> f64 {
-    let unit = 10.0_f64.powf(value.abs().max(1e-9).log10().floor() - 2.0);
-    ((value / unit).round() * unit * 1e6).round() / 1e6
 }

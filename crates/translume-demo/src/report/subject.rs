@@ -6,7 +6,7 @@ use crate::model::{self, Model};
 use glam::Vec3;
 use std::path::Path;
 use translume_mesh::rig::Pose;
-use translume_mesh::{Atlas, AtlasOptions};
+use translume_mesh::{Atlas, AtlasOptions, Warp};
 
 /// A model, its atlas, and how large it is.
 pub struct Subject {
@@ -15,6 +15,7 @@ pub struct Subject {
     pub atlas: Atlas,
     /// As its file shows it.
     pub pose: Pose,
+    pub warp: Warp,
     pub mm_per_unit: f32,
     /// Corners of a box around it, units of the model.
     pub bounds: ([f32; 3], [f32; 3]),
@@ -30,12 +31,17 @@ const MODELS: &str = "TRANSLUME_MODELS";
 impl Subject {
     pub fn open(name: &str, size: u32) -> Result<Self, Error> {
         let model = model::open(name)?;
+        let mm_per_unit = DIAGONAL_MM / model.diagonal()?;
+        Self::new(model, mm_per_unit, size)
+    }
+
+    pub fn new(model: Model, mm_per_unit: f32, size: u32) -> Result<Self, Error> {
         let options = AtlasOptions { size, ..Default::default() };
         let atlas = model::unwrap(&model.mesh, &options)?;
         let (bounds, diagonal) = (model.bounds()?, model.diagonal()?);
         let pose = model.pose(&model.rig, None, 0.0);
         let name = model.mesh.name.clone();
-        Ok(Self { name, model, atlas, pose, mm_per_unit: DIAGONAL_MM / diagonal, bounds, diagonal })
+        Ok(Self { name, model, atlas, pose, warp: Warp::default(), mm_per_unit, bounds, diagonal })
     }
 
     /// A point so many diagonals away from the middle of the model.
@@ -50,7 +56,11 @@ pub fn names(arguments: &Report) -> Vec<String> {
     if !arguments.models.is_empty() {
         return arguments.models.clone();
     }
-    let bunny = std::env::var_os(MODELS).map(|folder| Path::new(&folder).join("stanford-bunny.obj"));
-    let bunny = bunny.filter(|path| path.is_file()).map(|path| path.to_string_lossy().into_owned());
-    std::iter::once("creature".to_owned()).chain(bunny).collect()
+    std::iter::once("creature".to_owned()).chain(scan("stanford-bunny.obj")).collect()
+}
+
+/// A file among the models that the environment says where to find.
+pub fn scan(file: &str) -> Option<String> {
+    let path = Path::new(&std::env::var_os(MODELS)?).join(file);
+    path.is_file().then(|| path.to_string_lossy().into_owned())
 }

@@ -1,5 +1,6 @@
 //! Rows as CSV and as Markdown.
 
+use super::csv::quoted;
 use super::date;
 use super::trials::Sweep;
 use super::twin::Figures;
@@ -44,13 +45,6 @@ pub fn csv(rows: &[Row], header: &Header<'_>) -> String {
         text.push('\n');
     }
     text
-}
-
-fn quoted(field: &str) -> String {
-    if field.contains([',', '"', '\n']) {
-        return format!("\"{}\"", field.replace('"', "\"\""));
-    }
-    field.to_owned()
 }
 
 /// A table for each scene, and what its figures mean.

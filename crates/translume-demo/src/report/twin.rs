@@ -13,7 +13,7 @@ use translume_reference::{EnvironmentMap, Surface, deform, metrics};
 pub struct Twin {
     atlas: Atlas,
     rest: Vec<[f64; 3]>,
-    surface: Surface,
+    pub surface: Surface,
     mm_per_unit: f64,
     every: usize,
 }
@@ -46,10 +46,10 @@ impl Twin {
         let weights: Vec<f64> = subject.pose.weights.iter().copied().map(f64::from).collect();
         let joints: Vec<_> =
             subject.pose.joints.iter().map(|joint| joint.map(|column| column.map(f64::from))).collect();
-        let pose = deform::Pose { weights: &weights, joints: &joints, ..Default::default() };
+        let pose = deform::Pose { weights: &weights, joints: &joints, warp: subject.warp };
         let positions = deform::posed(mesh, &pose, mm_per_unit);
         // A mesh that nothing deforms keeps the normals of its file.
-        let rigid = mesh.targets.is_empty() && mesh.skin.is_none();
+        let rigid = mesh.targets.is_empty() && mesh.skin.is_none() && subject.warp.is_identity();
         let own = || mesh.normals.iter().map(|n| DVec3::from(n.map(f64::from)).normalize().to_array());
         let normals = if rigid { own().collect() } else { deform::normals(mesh, &positions) };
         let mut atlas = subject.atlas.clone();

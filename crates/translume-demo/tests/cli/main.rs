@@ -9,6 +9,7 @@
 mod desk;
 mod environment;
 mod report;
+mod scatter;
 
 use desk::{Desk, check_refusal, read_exr, refused, render, translume};
 use std::path::Path;

@@ -22,7 +22,7 @@ fn bounds(light: &str) -> Option<[f64; 3]> {
 }
 
 /// Fields of a line; commas between quotes part nothing.
-fn fields(line: &str) -> Vec<String> {
+pub fn fields(line: &str) -> Vec<String> {
     let mut fields = vec![String::new()];
     let mut quoted = false;
     for letter in line.chars() {
@@ -114,7 +114,7 @@ fn reports_that_cannot_be_are_refused_before_the_work() {
     let folder = folder.to_str().unwrap();
     let blocked = format!("{}/inside", desk.file("letter.txt", "dear report"));
     let cases = [
-        (report("scattering", folder, &[]), ["--suite", "scattering", "known are gather"]),
+        (report("scattering", folder, &[]), ["--suite", "scattering", "known are gather, scatter"]),
         (report("gather", &blocked, &[]), ["letter.txt", "cannot hold a report", "directory"]),
         (report("gather", folder, &["--models", "absent.obj"]), ["absent.obj", "", ""]),
         (report("gather", folder, &["--atlas", "100000"]), ["--atlas", "100000", "choose at most"]),

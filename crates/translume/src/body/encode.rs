@@ -124,10 +124,11 @@ impl Body {
         }
         if pending.contains(Stage::Scatter) {
             let mut pass = Pass::begin(encoder, Stage::Scatter, &mut recording);
-            match (&self.dual, self.method.resolved()) {
-                (Some(memory), Method::Dual { .. }) => {
+            match (&self.dual, &self.pattern, self.method.resolved()) {
+                (Some(memory), _, Method::Dual { .. }) => {
                     stages.scatter.dual.encode(&mut pass, memory, &self.tree, self.extent.vertices);
                 }
+                (_, Some(memory), Method::Pattern) => memory.encode(&mut pass, texels),
                 _ => stages.scatter.encode(&mut pass, &self.scatter_group, (self.method, self.kind), texels),
             }
         }
