@@ -12,7 +12,7 @@ struct Lists {
     words: array<u32>,
 }
 
-@group(0) @binding(0) var<uniform> dual: Dual;
+@group(0) @binding(0) var<uniform> scatter: Dual;
 @group(0) @binding(1) var<storage, read> bounds: array<vec4f>;
 @group(0) @binding(2) var<storage, read> lamps: array<Lamp>;
 @group(0) @binding(3) var<storage, read_write> exitance: array<vec4f>;
@@ -48,13 +48,13 @@ fn start() {
     atomicStore(&lists.overflows, 0u);
     lists.words[0] = packed(LINK, 0u);
     lists.words[1] = packed(LINK, 0u);
-    lists.words[ROOT_HEAD] = packed(dual.top_level, 0u);
+    lists.words[ROOT_HEAD] = packed(scatter.top_level, 0u);
 }
 
 // Writes down the sources left to the children; false where there is no room.
 fn write_run(head: ptr<function, u32>, count: u32, local: u32) -> bool {
     let run = atomicAdd(&lists.taken, count + 1u);
-    if run + count >= dual.capacity { return false; }
+    if run + count >= scatter.capacity { return false; }
     lists.words[run] = packed(LINK, *head);
     for (var k = 0u; k < count; k++) { lists.words[run + 1u + k] = notes[note(NOTED - 1u - k, local)]; }
     *head = run + count;
@@ -65,22 +65,22 @@ fn write_run(head: ptr<function, u32>, count: u32, local: u32) -> bool {
 @compute @workgroup_size(64)
 fn inner(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_index) local: u32) {
     let node = item_index(group, groups, local);
-    if node >= level_count(dual.texel_count, dual.level) { return; }
-    let own = receiver_index(dual.level, node);
-    let receiver = bounds[dual.first_receiver + own].xyz;
-    let size = bounds[dual.first_receiver + own].w;
+    if node >= level_count(scatter.texel_count, scatter.level) { return; }
+    let own = receiver_index(scatter.level, node);
+    let receiver = bounds[scatter.first_receiver + own].xyz;
+    let size = bounds[scatter.first_receiver + own].w;
     if size == NOT_NEEDED { return; }
     var before: Expansion;
     var head = ROOT_HEAD;
-    if dual.level < dual.start_level {
-        let parent = receiver_index(dual.level + 1u, node / 4u);
-        before = moved(expansions[parent - dual.first_expansion], receiver - bounds[dual.first_receiver + parent].xyz);
+    if scatter.level < scatter.start_level {
+        let parent = receiver_index(scatter.level + 1u, node / 4u);
+        before = moved(expansions[parent - scatter.first_expansion], receiver - bounds[scatter.first_receiver + parent].xyz);
         head = heads[parent];
     }
     var e = before;
     var w = walk(head);
     // The first level knows what its texels will want, who are too close together to differ.
-    let decides = dual.level == 1u;
+    let decides = scatter.level == 1u;
     var own_head = 0u;
     var left = 0u;
     var room = true;
@@ -94,9 +94,9 @@ fn inner(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: v
             let seen = bounds[index];
             let offset = receiver - seen.xyz;
             let extent = seen.w * seen.w + RECEIVER_WEIGHT * RECEIVER_WEIGHT * size * size;
-            let sight = dot(offset, offset) + dual.z_r_squared;
-            let small = extent < dual.theta_squared * sight;
-            let limit = select(SOURCE_EXCESS * SOURCE_EXCESS * size * size, dual.leaf_theta_squared * sight, decides);
+            let sight = dot(offset, offset) + scatter.z_r_squared;
+            let small = extent < scatter.theta_squared * sight;
+            let limit = select(SOURCE_EXCESS * SOURCE_EXCESS * size * size, scatter.leaf_theta_squared * sight, decides);
             if seen.w * seen.w > limit && w.level > 0u && !small {
                 open(&w);
                 continue;
@@ -115,11 +115,11 @@ fn inner(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: v
         for (var k = 0u; k < count; k++) {
             let index = notes[note(k, local)];
             // Derivatives by r² lose their digits where r hardly counts.
-            collect(&e, lamps[index], receiver - bounds[index].xyz, max(0.01 * size * size, dual.table.least_r2));
+            collect(&e, lamps[index], receiver - bounds[index].xyz, max(0.01 * size * size, scatter.table.least_r2));
         }
         evaluated += count;
     }
-    let texels = min(1u << (2u * dual.level), dual.texel_count - (node << (2u * dual.level)));
+    let texels = min(1u << (2u * scatter.level), scatter.texel_count - (node << (2u * scatter.level)));
     e.evaluations += f32(evaluated) / f32(texels);
     // Without room for a list nothing is resolved here: the children take over what the parent left.
     if !room {
@@ -128,8 +128,8 @@ fn inner(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: v
         own_head = head | select(0u, UNDECIDED, decides);
     }
     heads[own] = own_head;
-    if own >= dual.first_expansion {
-        expansions[own - dual.first_expansion] = e;
+    if own >= scatter.first_expansion {
+        expansions[own - scatter.first_expansion] = e;
         return;
     }
     for (var k = 0u; k < texels; k++) {
@@ -142,12 +142,12 @@ fn inner(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: v
 @compute @workgroup_size(64)
 fn leaf(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_index) local: u32) {
     let index = item_index(group, groups, local);
-    if index >= dual.texel_count { return; }
+    if index >= scatter.texel_count { return; }
     let receiver = bounds[index].xyz;
     var sum = vec4f(0.0);
     var head = ROOT_HEAD | UNDECIDED;
-    if dual.start_level > 0u {
-        if bounds[dual.first_receiver + receiver_index(1u, index / 4u)].w == NOT_NEEDED {
+    if scatter.start_level > 0u {
+        if bounds[scatter.first_receiver + receiver_index(1u, index / 4u)].w == NOT_NEEDED {
             exitance[index] = vec4f(0.0);
             return;
         }

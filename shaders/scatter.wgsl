@@ -16,6 +16,8 @@ struct Scatter {
     padding1: u32,
     // Where each level begins in `bounds`; level 0 is the texels.
     sources: array<vec4u, 4>,
+    // Of kernels whose sources lie off the surface.
+    terms: array<Term, 2>,
 }
 
 @group(0) @binding(0) var<uniform> scatter: Scatter;
@@ -25,19 +27,15 @@ struct Scatter {
 @group(0) @binding(3) var<storage, read_write> exitance: array<vec4f>;
 @group(0) @binding(4) var kernel_table: texture_2d<f32>;
 
-// What a source sends to a texel.
-fn sent(source: u32, texel: u32, receiver: vec3f) -> vec3f {
-    return received(scatter.table, receiver - bounds[source].xyz, lamps[source], source == texel);
-}
-
 // Every receiver collects from a range of sources: the exact sum that everything faster is compared with.
 @compute @workgroup_size(64)
 fn all_pairs(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_index) local: u32) {
     let index = item_index(group, groups, local);
     if index >= scatter.texel_count { return; }
     let receiver = bounds[index].xyz;
+    let normal = lamps[index].normal;
     var sum = vec3f(0.0);
-    for (var k = 0u; k < scatter.source_count; k++) { sum += sent(scatter.first_source + k, index, receiver); }
+    for (var k = 0u; k < scatter.source_count; k++) { sum += sent(scatter.first_source + k, index, receiver, normal).rgb; }
     sum *= marked_tint(lamps[index].marks);
     if scatter.first_source > 0u { sum += exitance[index].rgb; }
     exitance[index] = vec4f(sum, 0.0);
@@ -49,6 +47,7 @@ fn tree(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: ve
     let index = item_index(group, groups, local);
     if index >= scatter.texel_count { return; }
     let receiver = bounds[index].xyz;
+    let normal = lamps[index].normal;
     var sum = vec3f(0.0);
     var level = scatter.top_level;
     var node = 0u;
@@ -76,7 +75,7 @@ fn tree(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: ve
             }
         }
         if !found { break; }
-        sum += sent(source, index, receiver);
+        sum += sent(source, index, receiver, normal).rgb;
     }
     exitance[index] = vec4f(sum * marked_tint(lamps[index].marks), 0.0);
 }

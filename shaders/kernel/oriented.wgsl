@@ -25,7 +25,7 @@ fn jet_of_term(o: Offsets, lamp: Lamp, spread: f32, least_r2: f32) -> Jet {
 }
 
 fn jet_of_channel(d: vec3f, lamp: Lamp, spread: f32, least_r2: f32) -> Jet {
-    return profile_jet(dual.table, kernel_table, max(dot(d, d), least_r2), spread * spread, facing(d, lamp));
+    return profile_jet(scatter.table, kernel_table, max(dot(d, d), least_r2), spread * spread, facing(d, lamp));
 }
 
 // What a source sends to a point, and the one evaluation it took. own: the texel in whose middle the point is
@@ -34,9 +34,9 @@ fn sent(source: u32, own: u32, receiver: vec3f, normal: vec3f) -> vec4f {
     let spread = lamp.spread * select(1.0, 1.0 / NEIGHBOUR_NARROWING, source == own);
     var flux = vec3f(0.0);
     for (var k = 0u; k < 2u; k++) {
-        let o = offsets(dual.terms[k], lamp, receiver - bounds[source].xyz);
-        let jet = jet_of_term(o, lamp, spread, dual.table.least_r2);
-        flux -= dual.terms[k].weight * jet.first * (o.x * normal.x + o.y * normal.y + o.z * normal.z);
+        let o = offsets(scatter.terms[k], lamp, receiver - bounds[source].xyz);
+        let jet = jet_of_term(o, lamp, spread, scatter.table.least_r2);
+        flux -= scatter.terms[k].weight * jet.first * (o.x * normal.x + o.y * normal.y + o.z * normal.z);
     }
     return vec4f(2.0 * lamp.power * flux, 1.0);
 }
@@ -44,9 +44,9 @@ fn sent(source: u32, own: u32, receiver: vec3f, normal: vec3f) -> vec4f {
 // Adds what one source sends to the receivers about a point `d` from it.
 fn collect(e: ptr<function, Expansion>, lamp: Lamp, d: vec3f, least_r2: f32) {
     for (var k = 0u; k < 2u; k++) {
-        let o = offsets(dual.terms[k], lamp, d);
+        let o = offsets(scatter.terms[k], lamp, d);
         let jet = jet_of_term(o, lamp, lamp.spread, least_r2);
-        let power = lamp.power * dual.terms[k].weight;
+        let power = lamp.power * scatter.terms[k].weight;
         let first = 2.0 * power * jet.first;
         let second = 4.0 * power * jet.second;
         (*e).value += power * jet.value;

@@ -71,3 +71,13 @@ fn profile_jet(table: KernelTable, texels: texture_2d<f32>, r2: f32, s2: f32, fa
     let value = exp(logarithm);
     return Jet(value, value * first / r2, value * (first * first + second - first) / r2 / r2);
 }
+
+// A source off the surface.
+struct Term {
+    // How far below the surface, along its own normal, a source lies, RGB, mm.
+    depth: vec3f,
+    padding0: u32,
+    // What it counts, RGB.
+    weight: vec3f,
+    padding1: u32,
+}

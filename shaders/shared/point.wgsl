@@ -7,7 +7,7 @@ struct Lists {
     words: array<u32>,
 }
 
-@group(1) @binding(0) var<uniform> dual: Dual;
+@group(1) @binding(0) var<uniform> scatter: Dual;
 @group(1) @binding(1) var<storage, read> bounds: array<vec4f>;
 @group(1) @binding(2) var<storage, read> lamps: array<Lamp>;
 @group(1) @binding(3) var<storage, read> expansions: array<Expansion>;
@@ -25,9 +25,9 @@ fn exitance_at(receiver: vec3f, texel: u32) -> vec4f {
     var sum = vec4f(0.0);
     var head = ROOT_HEAD | UNDECIDED;
     let group = texel / 4u;
-    let seen = bounds[dual.first_receiver + group];
+    let seen = bounds[scatter.first_receiver + group];
     // A group that nobody was expected to need left nothing.
-    if dual.start_level > 0u && seen.w != NOT_NEEDED {
+    if scatter.start_level > 0u && seen.w != NOT_NEEDED {
         let e = moved(expansions[group], receiver - seen.xyz);
         sum = vec4f(leaving(e, lamps[texel].normal), e.evaluations);
         head = heads[group];

@@ -1,14 +1,5 @@
-// What both the stage and whoever takes over its lists know of a body. The module declares `dual`, `bounds`, `lamps`, `expansions`, `heads`,
+// What both the stage and whoever takes over its lists know of a body. The module declares `scatter`, `bounds`, `lamps`, `expansions`, `heads`,
 // `lists` and `kernel_table`.
-
-struct Term {
-    // How far below the surface, along its own normal, a source lies, RGB, mm.
-    depth: vec3f,
-    padding0: u32,
-    // What it counts, RGB.
-    weight: vec3f,
-    padding1: u32,
-}
 
 struct Dual {
     table: KernelTable,
@@ -86,14 +77,14 @@ fn pass_by(w: ptr<function, Walk>) {
 }
 
 fn source_index(level: u32, node: u32) -> u32 {
-    return dual.sources[level / 4u][level % 4u] + node;
+    return scatter.sources[level / 4u][level % 4u] + node;
 }
 
 fn receiver_index(level: u32, node: u32) -> u32 {
-    return dual.offsets[level / 4u][level % 4u] + node;
+    return scatter.offsets[level / 4u][level % 4u] + node;
 }
 
 // Whether a single texel has to open a source of this size.
 fn too_large_for_a_texel(size: f32, offset: vec3f) -> bool {
-    return size * size > dual.leaf_theta_squared * (dot(offset, offset) + dual.z_r_squared);
+    return size * size > scatter.leaf_theta_squared * (dot(offset, offset) + scatter.z_r_squared);
 }

@@ -21,6 +21,20 @@ macro_rules! shader {
     };
 }
 
+macro_rules! scatter {
+    ($name:literal, $($file:literal),+) => {
+        shader!(
+            $name,
+            "shared/dispatch.wgsl",
+            "shared/cluster.wgsl",
+            "shared/kernel_table.wgsl",
+            "shared/source.wgsl",
+            "shared/expansion.wgsl",
+            $($file),+
+        )
+    };
+}
+
 macro_rules! composite {
     ($name:literal, $($file:literal),+) => {
         shader!(
@@ -70,48 +84,18 @@ pub const GATHER: Shader = shader!(
 /// Texels → their tree of clusters.
 pub const CLUSTER: Shader = shader!("cluster", "shared/dispatch.wgsl", "shared/cluster.wgsl", "cluster.wgsl");
 /// Irradiance → radiant exitance.
-pub const SCATTER: Shader = shader!(
-    "scatter",
-    "shared/dispatch.wgsl",
-    "shared/cluster.wgsl",
-    "shared/kernel_table.wgsl",
-    "shared/source.wgsl",
-    "scatter.wgsl"
-);
-/// The same with groups of texels at both ends.
-pub const DUAL: Shader = shader!(
-    "dual",
-    "shared/dispatch.wgsl",
-    "shared/cluster.wgsl",
-    "shared/kernel_table.wgsl",
-    "shared/source.wgsl",
-    "shared/expansion.wgsl",
-    "shared/lists.wgsl",
-    "shared/walk.wgsl",
-    "kernel/chord.wgsl",
-    "dual.wgsl"
-);
+pub const SCATTER: Shader = scatter!("scatter", "kernel/chord.wgsl", "scatter.wgsl");
 /// The same with sources off the surface, whose flux leaves.
-pub const DUAL_ORIENTED: Shader = shader!(
-    "dual, oriented",
-    "shared/dispatch.wgsl",
-    "shared/cluster.wgsl",
-    "shared/kernel_table.wgsl",
-    "shared/source.wgsl",
-    "shared/expansion.wgsl",
-    "shared/lists.wgsl",
-    "shared/walk.wgsl",
-    "kernel/oriented.wgsl",
-    "dual.wgsl"
-);
-/// What that leaves for points → radiant exitance of every vertex.
-pub const VERTICES: Shader = shader!(
+pub const SCATTER_ORIENTED: Shader = scatter!("scatter, oriented", "kernel/oriented.wgsl", "scatter.wgsl");
+/// Irradiance → radiant exitance with groups of texels at both ends.
+pub const DUAL: Shader =
+    scatter!("dual", "shared/lists.wgsl", "shared/walk.wgsl", "kernel/chord.wgsl", "dual.wgsl");
+/// The same with sources off the surface, whose flux leaves.
+pub const DUAL_ORIENTED: Shader =
+    scatter!("dual, oriented", "shared/lists.wgsl", "shared/walk.wgsl", "kernel/oriented.wgsl", "dual.wgsl");
+/// What the groups leave for points → radiant exitance of every vertex.
+pub const VERTICES: Shader = scatter!(
     "vertices",
-    "shared/dispatch.wgsl",
-    "shared/cluster.wgsl",
-    "shared/kernel_table.wgsl",
-    "shared/source.wgsl",
-    "shared/expansion.wgsl",
     "shared/lists.wgsl",
     "shared/walk.wgsl",
     "kernel/chord.wgsl",
@@ -142,7 +126,7 @@ pub const COMPOSITE_FRAGMENTS: Shader = composite!(
 );
 
 /// Every module, in the order light flows through them.
-pub const ALL: [Shader; 15] = [
+pub const ALL: [Shader; 16] = [
     DEFORM,
     NORMALS,
     VISIBILITY,
@@ -150,6 +134,7 @@ pub const ALL: [Shader; 15] = [
     GATHER,
     CLUSTER,
     SCATTER,
+    SCATTER_ORIENTED,
     DUAL,
     DUAL_ORIENTED,
     VERTICES,

@@ -138,26 +138,29 @@ pub(crate) fn pipeline_with(
 pub(crate) struct PerMedium {
     device: wgpu::Device,
     layout: wgpu::PipelineLayout,
-    module: wgpu::ShaderModule,
+    /// For radial profiles, and for sources off the surface.
+    shaders: [translume_shaders::Shader; 2],
     entry_point: &'static str,
-    pipelines: [OnceLock<wgpu::ComputePipeline>; 4],
+    pipelines: [OnceLock<wgpu::ComputePipeline>; 8],
 }
 
 impl PerMedium {
     pub fn new(
         device: &wgpu::Device,
         layout: &wgpu::PipelineLayout,
-        module: &wgpu::ShaderModule,
+        shaders: [translume_shaders::Shader; 2],
         entry_point: &'static str,
     ) -> Self {
-        let (device, layout, module) = (device.clone(), layout.clone(), module.clone());
-        Self { device, layout, module, entry_point, pipelines: Default::default() }
+        let (device, layout) = (device.clone(), layout.clone());
+        Self { device, layout, shaders, entry_point, pipelines: Default::default() }
     }
 
     pub fn get(&self, kind: MediumKind) -> &wgpu::ComputePipeline {
-        let Self { device, layout, module, entry_point, pipelines } = self;
-        pipelines[kind.index()]
-            .get_or_init(|| pipeline_with(device, layout, module, entry_point, &kind.constants()))
+        let Self { device, layout, shaders, entry_point, pipelines } = self;
+        let oriented = usize::from(kind.oriented);
+        pipelines[kind.index() + 4 * oriented].get_or_init(|| {
+            pipeline_with(device, layout, &module(device, shaders[oriented]), entry_point, &kind.constants())
+        })
     }
 }
 
@@ -168,15 +171,17 @@ pub(crate) struct MediumKind {
     pub monochrome: bool,
     /// Whether light wanders differently far from place to place.
     pub scaled: bool,
+    /// Whether its sources lie off the surface.
+    pub oriented: bool,
 }
 
 impl MediumKind {
-    /// Each at its index.
+    /// Those whose sources lie on the surface, each at its index.
     pub const ALL: [Self; 4] = [
-        Self { monochrome: false, scaled: false },
-        Self { monochrome: true, scaled: false },
-        Self { monochrome: false, scaled: true },
-        Self { monochrome: true, scaled: true },
+        Self { monochrome: false, scaled: false, oriented: false },
+        Self { monochrome: true, scaled: false, oriented: false },
+        Self { monochrome: false, scaled: true, oriented: false },
+        Self { monochrome: true, scaled: true, oriented: false },
     ];
 
     pub fn index(self) -> usize {

@@ -262,6 +262,7 @@ pub(crate) struct ScatterLayout {
     pub z_r_squared: f32,
     pub padding: [u32; 2],
     pub sources: [[u32; 4]; 4],
+    pub terms: [TermLayout; 2],
 }
 
 #[repr(C)]
@@ -421,7 +422,17 @@ mod tests {
             SCATTER,
             "Scatter",
             ScatterLayout,
-            [table, texel_count, first_source, source_count, top_level, theta_squared, z_r_squared, sources]
+            [
+                table,
+                texel_count,
+                first_source,
+                source_count,
+                top_level,
+                theta_squared,
+                z_r_squared,
+                sources,
+                terms
+            ]
         );
         check!(
             PATTERN,

@@ -20,6 +20,7 @@ mod hard_cases;
 mod hard_light;
 mod irradiance;
 mod layout;
+mod oriented;
 mod pattern;
 mod profiles;
 mod scatter;

@@ -49,6 +49,11 @@ impl Dipole {
         }
     }
 
+    /// Of the virtual source above the surface, mm.
+    pub fn height(&self) -> f64 {
+        self.z_v
+    }
+
     fn weighted(self, weight: f64) -> Self {
         Self { flux: weight * self.flux, fluence: weight * self.fluence, ..self }
     }

@@ -9,17 +9,20 @@ mod dipole;
 mod half_space;
 mod hankel;
 mod layers;
+mod potential;
 pub(crate) mod radial;
 mod sampled;
 mod tabulated;
 #[cfg(test)]
 mod tests;
 
+use crate::layout::TermLayout;
 use crate::{Error, Medium, fresnel};
 pub use burley::BurleyFit;
 use channel::Channel;
 use dipole::Dipole;
 pub use layers::{Layer, Layers};
+use potential::Potential;
 use radial::Radial;
 use std::sync::Arc;
 pub use tabulated::Table;
@@ -68,6 +71,11 @@ pub enum Profile {
     /// dipole. Needs layers thicker than some mean free paths for its full accuracy; thinner ones keep energy and limits.
     /// Set up by a Hankel transform, the slowest of all.
     Multipole(Layers),
+    /// The classical dipole with its two sources where they are: below and above every texel along its own normal, and the flux that they
+    /// send through the receiver's plane leaving. On a plane it is the classical dipole. On smooth convex bodies of little absorption it is far
+    /// closer to path tracing (5 to 13 % instead of 18 to 26 % on a sphere); on concave ones and thin ones it is worse, because mirrored sources
+    /// land in other parts of the body. Takes twice as long, at texels only.
+    DipoleOriented,
     /// Radii and values of the user's own, whatever the medium: measured profiles, or any not listed here.
     Tabulated(Table),
 }
@@ -89,6 +97,7 @@ impl Profile {
     pub const NAMES: &[(&'static str, Self)] = &[
         ("dipole", Self::Dipole),
         ("dipole-normalised", Self::DipoleNormalised),
+        ("dipole-oriented", Self::DipoleOriented),
         ("dipole-single", Self::WithSingleScattering(Diffusion::Dipole)),
         ("better-dipole", Self::BetterDipole),
         ("better-dipole-single", Self::WithSingleScattering(Diffusion::BetterDipole)),
@@ -139,7 +148,28 @@ impl Profile {
         self == other || classical(self) && classical(other)
     }
 
-    /// R_d of each channel of a medium. Channels alike are made once.
+    /// Whether its sources lie off the surface.
+    pub(crate) fn is_oriented(&self) -> bool {
+        *self == Self::DipoleOriented
+    }
+
+    /// Where the sources of such a profile lie, and what they count.
+    pub(crate) fn terms(&self, medium: &Medium) -> [TermLayout; 2] {
+        if !self.is_oriented() {
+            return [TermLayout::default(); 2];
+        }
+        let channels = Channel::of(medium);
+        let term = |sign: f64, depth: &dyn Fn(&Channel) -> f64| TermLayout {
+            depth: [0, 1, 2].map(|k| depth(&channels[k]) as f32),
+            weight: [0, 1, 2].map(|k| (sign * channels[k].albedo()) as f32),
+            ..TermLayout::default()
+        };
+        let real = |channel: &Channel| 1.0 / channel.extinction();
+        let height = |channel: &Channel| -Dipole::classical(channel).height();
+        [term(1.0, &real), term(-1.0, &height)]
+    }
+
+    /// R_d of each channel of a medium, or the potential about a source that lies off the surface. Channels alike are made once.
     pub(crate) fn channels(&self, medium: &Medium) -> Channels {
         let channels = Channel::of(medium);
         let red = self.radial(medium, &channels[0], 0);
@@ -172,6 +202,7 @@ impl Profile {
         }
         match self {
             Self::Dipole | Self::DipoleNormalised => Arc::new(Dipole::classical(channel)),
+            Self::DipoleOriented => Arc::new(Potential::new(channel)),
             Self::BetterDipole => Arc::new(Dipole::better(channel)),
             Self::PhotonBeam => Arc::new(beam::beam(channel)),
             Self::WithSingleScattering(diffusion) => Arc::new(match diffusion {

@@ -10,7 +10,7 @@ use crate::evaluate::Evaluate;
 use crate::gpu::{
     self, FLOAT_TEXTURE, MediumKind, Pass, PerMedium, READ, UNIFORM_ARRAY, UNIFORM_STRIDE, WRITE,
 };
-use crate::layout::{DualLayout, ScatterLayout, TermLayout};
+use crate::layout::{DualLayout, ScatterLayout};
 use crate::stages::cluster::Tree;
 
 /// The coarsest level of receivers has at least this many nodes: fewer would not share enough to be worth a dispatch.
@@ -108,10 +108,11 @@ impl Dual {
         let layout = gpu::layout(device, "dual", wgpu::ShaderStages::COMPUTE, &types);
         let module = gpu::module(device, translume_shaders::DUAL);
         let pipelines = gpu::pipeline_layout(device, "dual", &[&layout]);
+        let shaders = [translume_shaders::DUAL, translume_shaders::DUAL_ORIENTED];
         Self {
             start: gpu::compute_pipeline(device, &layout, &module, "start"),
-            inner: PerMedium::new(device, &pipelines, &module, "inner"),
-            leaf: PerMedium::new(device, &pipelines, &module, "leaf"),
+            inner: PerMedium::new(device, &pipelines, shaders, "inner"),
+            leaf: PerMedium::new(device, &pipelines, shaders, "leaf"),
             points: Points::new(device),
             layout,
         }
@@ -214,7 +215,7 @@ impl DualMemory {
                 first_receiver: tree.sources(),
                 first_expansion: self.first_expansion,
                 padding: [0; 2],
-                terms: [TermLayout::default(); 2],
+                terms: scatter.terms,
                 offsets,
                 sources: scatter.sources,
             };

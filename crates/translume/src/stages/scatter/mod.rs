@@ -13,7 +13,7 @@ use crate::gpu::{
     self, FLOAT_TEXTURE, MediumKind, Pass, PerMedium, READ, UNIFORM_ARRAY, UNIFORM_STRIDE, WRITE,
 };
 use crate::kernel_table::KernelTableLayout;
-use crate::layout::ScatterLayout;
+use crate::layout::{ScatterLayout, TermLayout};
 use crate::stages::cluster::Tree;
 
 /// How the sum over sources is evaluated.
@@ -103,11 +103,11 @@ impl Scatter {
     pub fn new(device: &wgpu::Device) -> Self {
         let types = [UNIFORM_ARRAY, READ, READ, WRITE, FLOAT_TEXTURE];
         let layout = gpu::layout(device, "scatter", wgpu::ShaderStages::COMPUTE, &types);
-        let module = gpu::module(device, translume_shaders::SCATTER);
+        let shaders = [translume_shaders::SCATTER, translume_shaders::SCATTER_ORIENTED];
         let pipelines = gpu::pipeline_layout(device, "scatter", &[&layout]);
         Self {
-            all_pairs: PerMedium::new(device, &pipelines, &module, "all_pairs"),
-            tree: PerMedium::new(device, &pipelines, &module, "tree"),
+            all_pairs: PerMedium::new(device, &pipelines, shaders, "all_pairs"),
+            tree: PerMedium::new(device, &pipelines, shaders, "tree"),
             dual: dual::Dual::new(device),
             layout,
         }
@@ -133,6 +133,7 @@ impl Scatter {
     pub fn layout(
         table: KernelTableLayout,
         smooth_length: f32,
+        terms: [TermLayout; 2],
         tree: &Tree,
         method: Method,
     ) -> ScatterLayout {
@@ -154,6 +155,7 @@ impl Scatter {
             z_r_squared: smooth_length * smooth_length,
             padding: [0; 2],
             sources,
+            terms,
         }
     }
 

@@ -39,10 +39,9 @@ impl Points {
         let stages = ShaderStages::COMPUTE | ShaderStages::FRAGMENT;
         let field = gpu::layout(device, "field", stages, &types);
         let vertices_layout = gpu::layout(device, "vertices", ShaderStages::COMPUTE, &[READ, WRITE]);
-        let module = gpu::module(device, translume_shaders::VERTICES);
         let layout = gpu::pipeline_layout(device, "vertices", &[&vertices_layout, &field]);
         Self {
-            vertices: PerMedium::new(device, &layout, &module, "vertices"),
+            vertices: PerMedium::new(device, &layout, [translume_shaders::VERTICES; 2], "vertices"),
             seen: gpu::layout(device, "exitance of vertices", ShaderStages::VERTEX, &[READ]),
             field,
             vertices_layout,
