@@ -50,18 +50,15 @@ fn profile_jet(table: KernelTable, texels: texture_2d<f32>, r2: f32, s2: f32, fa
     var v: array<vec3f, 4>;
     for (var k = 0; k < 4; k++) {
         let at = clamp(column + k - 1, 1, i32(table.columns));
-        let facing_row = row + i32(table.rows);
-        let lying = mix(textureLoad(texels, vec2i(at, row), 0).rgb, textureLoad(texels, vec2i(at, row + 1), 0).rgb, fy);
-        let upright = mix(textureLoad(texels, vec2i(at, facing_row), 0).rgb, textureLoad(texels, vec2i(at, facing_row + 1), 0).rgb, fy);
-        // Beyond a disc that lies along the line no further than second order holds.
-        let slope = upright - lying;
-        v[k] = lying + facing * select(slope, max(slope, vec3f(-STEEPEST)), facing < 0.0);
+        v[k] = mix(textureLoad(texels, vec2i(at, row), 0).rgb, textureLoad(texels, vec2i(at, row + 1), 0).rgb, fy);
     }
     const CELLS: f32 = R2_CELLS_PER_OCTAVE * 1.44269504;
     // By ln r².
     let first = CELLS * 0.5 * mix(v[2] - v[0], v[3] - v[1], fx);
     let second = CELLS * CELLS * mix(v[2] - 2.0 * v[1] + v[0], v[3] - 2.0 * v[2] + v[1], fx);
-    let logarithm = mix(v[1], v[2], fx);
+    // To second order in s a disc that lies along the line sends more than one that faces it by s²/2·(K″ − K′/r).
+    let slope = clamp(s2 / r2 * (second + first * first - first), vec3f(-STEEPEST), vec3f(STEEPEST));
+    let logarithm = mix(v[1], v[2], fx) - facing * slope;
     if MONOCHROME {
         let value = exp(logarithm.r);
         let slope = value * first.r / r2;

@@ -141,8 +141,9 @@ fn albedo_multiplies_an_even_surface() {
     let tinted = shown(Some(blue));
     for (tinted, plain) in tinted.iter().zip(&plain) {
         assert_eq!(tinted[0], 0.0);
-        assert!((tinted[1] / plain[1] - 0.36).abs() < 1e-5, "{} of {}", tinted[1], plain[1]);
-        assert!((tinted[2] / plain[2] - 1.0).abs() < 1e-6);
+        // Another total of red, green and blue rounds the moments of clusters otherwise, in 32,767ths.
+        assert!((tinted[1] / plain[1] - 0.36).abs() < 1e-4, "{} of {}", tinted[1], plain[1]);
+        assert!((tinted[2] / plain[2] - 1.0).abs() < 1e-4, "{} of {}", tinted[2], plain[2]);
     }
     assert_eq!(bytemuck::cast_slice::<_, u8>(&shown(None)), bytemuck::cast_slice::<_, u8>(&plain));
 }
