@@ -520,7 +520,6 @@ impl Body {
 /// become 0.3 to 0.9 %.
 const FLUX_NARROWING: f32 = 0.65;
 
-
 /// Whether exitance can be evaluated there, and the device can hold what the method remembers.
 fn check_method(tree: &Tree, method: Method, evaluate: Evaluate, limits: &wgpu::Limits) -> Result<(), Error> {
     if matches!(method.resolved(), Method::Dual { .. }) {

@@ -40,6 +40,8 @@ fn table() -> Profile {
 
 fn all() -> Vec<Profile> {
     let mut all: Vec<_> = Profile::NAMES.iter().map(|(_, profile)| profile.clone()).collect();
+    // Another kernel, with a test of its own.
+    all.retain(|profile| *profile != Profile::DipoleOriented);
     let by_hand = BurleyFit::DiffuseMeanFreePath([3.0, 1.5, 0.5]);
     all.extend([Profile::NormalisedDiffusion(by_hand), layered(0.5), table()]);
     all

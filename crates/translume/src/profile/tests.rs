@@ -20,7 +20,8 @@ fn table() -> Profile {
 
 /// Every profile, with something for each parameter.
 fn profiles() -> Vec<Profile> {
-    let mut all: Vec<_> = Profile::NAMES.iter().map(|(_, profile)| profile.clone()).collect();
+    let mut all: Vec<_> =
+        Profile::NAMES.iter().map(|(_, profile)| profile.clone()).filter(|p| !p.is_oriented()).collect();
     all.push(Profile::NormalisedDiffusion(BurleyFit::DiffuseMeanFreePath([0.5, 1.0, 8.0])));
     all.extend([
         layers(0.3, &[]),
