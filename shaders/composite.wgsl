@@ -18,11 +18,9 @@ struct Composite {
 }
 
 @group(0) @binding(0) var<uniform> composite: Composite;
-@group(0) @binding(1) var<storage, read> positions: array<vec4f>;
-@group(0) @binding(2) var<storage, read> normals: array<vec4f>;
-@group(0) @binding(3) var exitance: texture_2d<f32>;
-@group(0) @binding(4) var<uniform> lighting: Gather;
-@group(0) @binding(5) var shadow_maps: texture_depth_2d_array;
+@group(0) @binding(1) var exitance: texture_2d<f32>;
+@group(0) @binding(2) var<uniform> lighting: Gather;
+@group(0) @binding(3) var shadow_maps: texture_depth_2d_array;
 
 struct Fragment {
     // The depth pass and the picture must agree to the bit.
@@ -34,9 +32,8 @@ struct Fragment {
 }
 
 @vertex
-fn vertex(@location(0) xref: u32, @location(1) uv: vec2f) -> Fragment {
-    let position = positions[xref].xyz;
-    return Fragment(composite.view_projection * vec4f(position, 1.0), position, normals[xref].xyz, uv, exitance_at_vertex(xref));
+fn vertex(@location(0) xref: u32, @location(1) uv: vec2f, @location(2) position: vec3f, @location(3) normal: vec3f) -> Fragment {
+    return Fragment(composite.view_projection * vec4f(position, 1.0), position, normal, uv, exitance_at_vertex(xref));
 }
 
 @fragment

@@ -58,6 +58,8 @@ pub const DEFORM: Shader =
 /// Deformed positions → normals.
 pub const NORMALS: Shader =
     shader!("normals", "shared/dispatch.wgsl", "shared/warp.wgsl", "shared/deform.wgsl", "normals.wgsl");
+/// Both → the same for each vertex of the atlas.
+pub const CORNERS: Shader = shader!("corners", "shared/dispatch.wgsl", "corners.wgsl");
 /// Depth maps from lights.
 pub const SHADOW: Shader = shader!("shadow", "shadow.wgsl");
 /// Depth maps along directions of the sky → the share of every texel that sees them.
@@ -126,9 +128,10 @@ pub const COMPOSITE_FRAGMENTS: Shader = composite!(
 );
 
 /// Every module, in the order light flows through them.
-pub const ALL: [Shader; 16] = [
+pub const ALL: [Shader; 17] = [
     DEFORM,
     NORMALS,
+    CORNERS,
     VISIBILITY,
     SHADOW,
     GATHER,

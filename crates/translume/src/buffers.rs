@@ -46,6 +46,7 @@ pub(crate) struct Buffers {
     pub exitance: wgpu::Buffer,
     pub pixels: wgpu::Buffer,
     pub atlas_vertices: wgpu::Buffer,
+    pub corners: wgpu::Buffer,
     pub atlas_indices: wgpu::Buffer,
 }
 
@@ -53,6 +54,8 @@ pub(crate) struct Buffers {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Extent {
     pub vertices: u32,
+    /// Vertices of the atlas.
+    pub corners: u32,
     pub triangles: u32,
     pub targets: u32,
     pub joints: u32,
@@ -66,6 +69,7 @@ impl Extent {
     pub fn new(mesh: &Mesh, atlas: &Atlas) -> Self {
         Self {
             vertices: mesh.positions.len() as u32,
+            corners: atlas.vertices.len() as u32,
             triangles: mesh.triangles.len() as u32,
             targets: mesh.targets.len() as u32,
             joints: mesh.skin.as_ref().map_or(0, |skin| skin.joints as u32),
@@ -96,6 +100,7 @@ impl Extent {
             ("bounds", bounds, SMALLER_ATLAS),
             ("mesh", 36 * u64::from(self.vertices), SMALLER_MESH),
             ("mesh", adjacency, SMALLER_MESH),
+            ("mesh", 32 * u64::from(self.corners), SMALLER_MESH),
             ("morph targets", deltas, "use fewer morph targets"),
             ("skin", influences, "let fewer joints move a vertex"),
             ("skin", 64 * u64::from(self.joints), "use fewer joints"),
@@ -212,7 +217,18 @@ impl Buffers {
             scatter_uniforms: gpu::uniform_buffer(device, "scatter", UNIFORM_STRIDE * u64::from(dispatches)),
             exitance: vectors("exitance", atlas.texels.len()),
             pixels: storage("pixels", &atlas.pixels),
-            atlas_vertices: gpu::buffer_with(device, "atlas vertices", BufferUsages::VERTEX, &atlas_vertices),
+            atlas_vertices: gpu::buffer_with(
+                device,
+                "atlas vertices",
+                BufferUsages::VERTEX | BufferUsages::STORAGE,
+                &atlas_vertices,
+            ),
+            corners: device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some("corners"),
+                size: 32 * atlas_vertices.len() as u64,
+                usage: BufferUsages::VERTEX | BufferUsages::STORAGE,
+                mapped_at_creation: false,
+            }),
             atlas_indices: gpu::buffer_with(device, "atlas indices", BufferUsages::INDEX, &atlas_indices),
         }
     }

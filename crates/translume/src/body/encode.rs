@@ -79,7 +79,7 @@ impl Body {
             stages.deform.encode(
                 &mut Pass::begin(encoder, Stage::Deform, &mut recording),
                 &self.deform_groups,
-                self.extent.vertices,
+                (self.extent.vertices, self.extent.corners),
                 self.extent.influences_per_vertex > 0,
                 self.pose.deforms(),
             );

@@ -3,7 +3,7 @@
 //! reads  positions, normals, exitance of texels, vertices or points       writes  the host's colour and depth attachments
 //! twin   `translume_reference::composite`           WGSL    `composite.wgsl`
 
-use crate::gpu::{self, DEPTH_MAPS, FLOAT_TEXTURE, MediumKind, READ, UNIFORM};
+use crate::gpu::{self, DEPTH_MAPS, FLOAT_TEXTURE, MediumKind, UNIFORM};
 use crate::layout::{AtlasVertexLayout, CompositeLayout};
 use crate::stages::scatter::points::{PointMemory, Points};
 use crate::{Body, Camera};
@@ -78,6 +78,7 @@ pub struct CompositeView {
     /// The depth maps that are bound; a body makes new ones when it gets more shadows.
     depth_maps: wgpu::Texture,
     vertices: wgpu::Buffer,
+    corners: wgpu::Buffer,
     indices: wgpu::Buffer,
     index_count: u32,
     flat: bool,
@@ -88,7 +89,7 @@ pub struct CompositeView {
 
 impl Composite {
     pub(crate) fn new(device: &wgpu::Device, points: &Points, target: CompositeTarget) -> Self {
-        let types = [UNIFORM, READ, READ, FLOAT_TEXTURE, UNIFORM, DEPTH_MAPS];
+        let types = [UNIFORM, FLOAT_TEXTURE, UNIFORM, DEPTH_MAPS];
         let layout = gpu::layout(device, "composite", ShaderStages::VERTEX_FRAGMENT, &types);
         let kind = |shader, second: Option<&wgpu::BindGroupLayout>, medium| Kind {
             medium,
@@ -144,6 +145,7 @@ impl Composite {
             layout: self.layout.clone(),
             uniform,
             vertices: body.buffers.atlas_vertices.clone(),
+            corners: body.buffers.corners.clone(),
             indices: body.buffers.atlas_indices.clone(),
             index_count: body.extent.triangles * 3,
             flat: body.flat_normals,
@@ -156,6 +158,7 @@ impl Composite {
     pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>, view: &CompositeView) {
         pass.set_bind_group(0, &view.group, &[]);
         pass.set_vertex_buffer(0, view.vertices.slice(..));
+        pass.set_vertex_buffer(1, view.corners.slice(..));
         pass.set_index_buffer(view.indices.slice(..), wgpu::IndexFormat::Uint32);
         if view.kind >= FRAGMENTS && self.target.depth.is_some() {
             pass.set_pipeline(self.depth_pipeline());
@@ -215,8 +218,6 @@ fn bind(
 ) -> wgpu::BindGroup {
     let resources = [
         uniform.as_entire_binding(),
-        body.buffers.positions.as_entire_binding(),
-        body.buffers.normals.as_entire_binding(),
         wgpu::BindingResource::TextureView(body.exitance_view()),
         body.buffers.gather_uniform.as_entire_binding(),
         wgpu::BindingResource::TextureView(&body.depth_maps.sampled),
@@ -265,6 +266,14 @@ fn pipeline(
         step_mode: wgpu::VertexStepMode::Vertex,
         attributes: &wgpu::vertex_attr_array![0 => Uint32, 1 => Float32x2],
     };
+    let corner = wgpu::VertexBufferLayout {
+        array_stride: 32,
+        step_mode: wgpu::VertexStepMode::Vertex,
+        attributes: &[
+            wgpu::VertexAttribute { format: wgpu::VertexFormat::Float32x3, offset: 0, shader_location: 2 },
+            wgpu::VertexAttribute { format: wgpu::VertexFormat::Float32x3, offset: 16, shader_location: 3 },
+        ],
+    };
     device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: Some("composite"),
         layout: Some(layout),
@@ -272,7 +281,7 @@ fn pipeline(
             module,
             entry_point: Some("vertex"),
             compilation_options: wgpu::PipelineCompilationOptions::default(),
-            buffers: &[Some(vertex)],
+            buffers: &[Some(vertex), Some(corner)],
         },
         // Scans are open: their inside is drawn too, with the light of their outside.
         primitive: wgpu::PrimitiveState::default(),

@@ -1,7 +1,7 @@
-//! Deform: rest pose, morph targets, joints and warp → positions in mm and unit normals, per mesh vertex.
+//! Deform: rest pose, morph targets, joints and warp → positions in mm and unit normals, per mesh vertex and per vertex of the atlas.
 //!
-//! reads  rest pose, deltas, weights, influences, joints, triangle adjacency      writes  positions, normals
-//! twin   `translume_reference::deform`                                           WGSL    `deform.wgsl`, `normals.wgsl`
+//! reads  rest pose, deltas, weights, influences, joints, triangle adjacency      writes  positions, normals, corners
+//! twin   `translume_reference::deform`                                           WGSL    `deform.wgsl`, `normals.wgsl`, `corners.wgsl`
 
 use crate::buffers::Buffers;
 use crate::gpu::{self, Pass, READ, UNIFORM, WRITE};
@@ -9,15 +9,18 @@ use crate::gpu::{self, Pass, READ, UNIFORM, WRITE};
 pub(crate) struct Deform {
     pose_layout: wgpu::BindGroupLayout,
     normals_layout: wgpu::BindGroupLayout,
+    corners_layout: wgpu::BindGroupLayout,
     rigid: wgpu::ComputePipeline,
     skinned: wgpu::ComputePipeline,
     recompute_normals: wgpu::ComputePipeline,
+    unfold: wgpu::ComputePipeline,
 }
 
-/// What the two passes read and write for one body.
+/// What the three passes read and write for one body.
 pub(crate) struct DeformGroups {
     pose: wgpu::BindGroup,
     normals: wgpu::BindGroup,
+    corners: wgpu::BindGroup,
 }
 
 impl Deform {
@@ -25,6 +28,8 @@ impl Deform {
         let layout = |label, types: &[_]| gpu::layout(device, label, wgpu::ShaderStages::COMPUTE, types);
         let pose_layout = layout("deform", &[UNIFORM, READ, READ, READ, READ, READ, WRITE, WRITE]);
         let normals_layout = layout("normals", &[UNIFORM, READ, READ, READ, WRITE]);
+        let corners_layout = layout("corners", &[READ, READ, READ, WRITE]);
+        let corners = gpu::module(device, translume_shaders::CORNERS);
         let pose = gpu::module(device, translume_shaders::DEFORM);
         let normals = gpu::module(device, translume_shaders::NORMALS);
         let specialised =
@@ -33,8 +38,10 @@ impl Deform {
             rigid: specialised(0.0),
             skinned: specialised(1.0),
             recompute_normals: gpu::compute_pipeline(device, &normals_layout, &normals, "recompute_normals"),
+            unfold: gpu::compute_pipeline(device, &corners_layout, &corners, "unfold"),
             pose_layout,
             normals_layout,
+            corners_layout,
         }
     }
 
@@ -44,7 +51,7 @@ impl Deform {
             gpu::bind(device, label, layout, &resources)
         };
         let Buffers { deform_uniform, positions, normals, triangles, adjacency, .. } = buffers;
-        let Buffers { rest, deltas, weights, influences, joints, .. } = buffers;
+        let Buffers { rest, deltas, weights, influences, joints, atlas_vertices, corners, .. } = buffers;
         let pose = [deform_uniform, rest, deltas, weights, influences, joints, positions, normals];
         DeformGroups {
             pose: bind("deform", &self.pose_layout, &pose),
@@ -53,6 +60,7 @@ impl Deform {
                 &self.normals_layout,
                 &[deform_uniform, triangles, adjacency, positions, normals],
             ),
+            corners: bind("corners", &self.corners_layout, &[atlas_vertices, positions, normals, corners]),
         }
     }
 
@@ -61,7 +69,7 @@ impl Deform {
         &self,
         pass: &mut Pass<'_>,
         groups: &DeformGroups,
-        vertices: u32,
+        (vertices, corners): (u32, u32),
         skinned: bool,
         deforms: bool,
     ) {
@@ -73,5 +81,8 @@ impl Deform {
             pass.set_bind_group(&groups.normals, &[]);
             pass.dispatch(vertices);
         }
+        pass.set_pipeline(&self.unfold);
+        pass.set_bind_group(&groups.corners, &[]);
+        pass.dispatch(corners);
     }
 }
