@@ -20,7 +20,7 @@ pub struct BodyDescriptor<'a> {
     /// Memory of [`Method::Dual`] for open sources, in entries of four bytes per texel, 0..=1024; no more than one storage binding
     /// holds are made, and more at smaller opening angles. What finds no room takes longer, but is not lost
     /// ([`Outputs::lists`](crate::Outputs::lists) counts it); the same input then need not give the same bits. Bodies lit from
-    /// everywhere took 6 to 17 at θ = 0.75.
+    /// everywhere took 6 to 17 at a tolerance of 1 %.
     pub list_entries: u32,
     /// Where exitance is evaluated.
     pub evaluate: Evaluate,
