@@ -2,9 +2,12 @@
 
 mod encode;
 mod evaluation;
+mod kernel;
+mod settings;
 
+use self::kernel::{check_kernel, check_method};
 use crate::bounds::PoseBounds;
-use crate::buffers::{Buffers, Extent, Outputs};
+use crate::buffers::{Buffers, Extent};
 use crate::descriptor::BodyDescriptor;
 use crate::evaluate::{Evaluate, Shape};
 use crate::frame::{self, Casters, Frame, Lighting};
@@ -18,15 +21,14 @@ use crate::shadow_view::{Subject, View};
 use crate::stages::cluster::Tree;
 use crate::stages::deform::DeformGroups;
 use crate::stages::gather::Kinds;
-use crate::stages::scatter::dual::{self, Demand, DualMemory};
+use crate::stages::scatter::Method;
+use crate::stages::scatter::dual::DualMemory;
 use crate::stages::scatter::pattern::{PatternMemory, Plan};
-use crate::stages::scatter::{Method, Scatter};
 use crate::stages::shadow::DepthMaps;
 use crate::stages::visibility::SkyMemory;
 use crate::stages::{Stage, StageSet, Stages};
 use crate::standing::Standing;
 use crate::timings::Timer;
-use crate::variation::{VERTEX_MARK, Variation};
 use crate::{Error, Light, Medium, Profile, ShadowOptions};
 use glam::{Mat4, Vec3};
 use std::sync::Arc;
@@ -281,144 +283,6 @@ impl Body {
         self.pending
     }
 
-    /// Changes how finely shadows are computed; the next frame looks anew from every light.
-    ///
-    /// # Errors
-    /// [`Error::Shadow`] names the number that cannot be.
-    pub fn set_shadows(&mut self, shadows: ShadowOptions) -> Result<(), Error> {
-        shadows.validate(self.limits.max_texture_dimension_2d)?;
-        let ShadowOptions { directions, direction_resolution, .. } = self.shadows;
-        if (directions, direction_resolution) != (shadows.directions, shadows.direction_resolution) {
-            self.sky = SkyMemory::new(&shadows);
-        }
-        self.shadows_stale |= shadows != self.shadows;
-        self.shadows = shadows;
-        Ok(())
-    }
-
-    /// How finely shadows are computed.
-    #[must_use]
-    pub fn shadows(&self) -> &ShadowOptions {
-        &self.shadows
-    }
-
-    /// Changes the medium; the next frame scatters anew, and gathers too if the index of refraction changed.
-    ///
-    /// # Errors
-    /// [`Error::Medium`] names the coefficient that cannot be.
-    pub fn set_medium(&mut self, medium: Medium) -> Result<(), Error> {
-        medium.validate()?;
-        self.scatter_stale |= medium != self.medium;
-        self.surface_stale |= medium.ior != self.medium.ior;
-        self.medium = medium;
-        self.exit_scale = self.profile.exit_scale(medium.ior);
-        Ok(())
-    }
-
-    /// Makes the medium differ from texel to texel of the atlas, or with `None` no more; the next frame clusters and scatters anew.
-    ///
-    /// # Errors
-    /// [`Error::Frame`] names the texel whose variation is out of range, or how many there are of how many.
-    pub fn set_variation(
-        &mut self,
-        queue: &wgpu::Queue,
-        variation: Option<&[Variation]>,
-    ) -> Result<(), Error> {
-        let texels = self.marks.len();
-        let variation = variation.unwrap_or_default();
-        if !variation.is_empty() && variation.len() != texels {
-            return Err(Error::Frame {
-                problem: format!("the medium varies over {} of {texels} texels", variation.len()),
-                remedy: "give one variation for each texel of the atlas",
-            });
-        }
-        variation.iter().enumerate().try_for_each(|(texel, v)| v.validate(texel))?;
-        let mut marks = self.marks.clone();
-        for (mark, v) in marks.iter_mut().zip(variation) {
-            *mark = *mark & VERTEX_MARK | v.mark();
-        }
-        queue.write_buffer(&self.buffers.marks, 0, bytemuck::cast_slice(&marks));
-        self.kind.scaled = variation.iter().any(|v| v.scale != 1.0);
-        self.greatest_scale = variation.iter().map(|v| v.scale).fold(1.0, f32::max);
-        self.method_stale = true;
-        self.pending.insert(StageSet::from_stage_on(Stage::Cluster));
-        Ok(())
-    }
-
-    /// Changes the profile; the next frame scatters anew, unless both are classical dipoles, which differ in how light leaves alone.
-    ///
-    /// # Errors
-    /// [`Error::Profile`] names the parameter that cannot be, [`Error::Medium`] the coefficient of a layer.
-    pub fn set_profile(&mut self, profile: Profile) -> Result<(), Error> {
-        profile.validate()?;
-        check_kernel(&profile, self.method, self.evaluate)?;
-        self.scatter_stale |= !profile.scatters_like(&self.profile);
-        self.exit_scale = profile.exit_scale(self.medium.ior);
-        self.profile = profile;
-        Ok(())
-    }
-
-    /// Changes how the scatter sum is evaluated; the next frame scatters anew.
-    ///
-    /// # Errors
-    /// [`Error::Frame`] for an opening angle outside its range, [`Error::Limit`] where the device cannot hold what the method remembers.
-    pub fn set_method(&mut self, method: Method) -> Result<(), Error> {
-        method.validate()?;
-        check_method(&self.tree, method, self.evaluate, &self.limits)?;
-        check_kernel(&self.profile, method, self.evaluate)?;
-        self.method_stale |= method != self.method;
-        self.method = method;
-        Ok(())
-    }
-
-    /// Changes where exitance is evaluated; the next frame scatters anew if that is elsewhere.
-    ///
-    /// # Errors
-    /// [`Error::Frame`] where the method has no points, [`Error::Limit`] where the device cannot hold what it remembers.
-    pub fn set_evaluate(&mut self, evaluate: Evaluate) -> Result<(), Error> {
-        check_method(&self.tree, self.method, evaluate, &self.limits)?;
-        check_kernel(&self.profile, self.method, evaluate)?;
-        self.evaluate = evaluate;
-        Ok(())
-    }
-
-    /// Where the last prepared frame is evaluated; never [`Evaluate::Auto`].
-    #[must_use]
-    pub fn evaluated(&self) -> Evaluate {
-        self.evaluated
-    }
-
-    /// The medium.
-    #[must_use]
-    pub fn medium(&self) -> &Medium {
-        &self.medium
-    }
-
-    /// The profile.
-    #[must_use]
-    pub fn profile(&self) -> &Profile {
-        &self.profile
-    }
-
-    /// Radiant exitance B over the atlas, `Rgba32Float`: linear RGB, alpha 1 where a texel or gutter is. Sample it with
-    /// [`translume_shaders::MATERIAL`].
-    #[must_use]
-    pub fn exitance_view(&self) -> &wgpu::TextureView {
-        &self.exitance_view
-    }
-
-    /// The texture behind [`exitance_view`](Self::exitance_view); it can be copied from.
-    #[must_use]
-    pub fn exitance_texture(&self) -> &wgpu::Texture {
-        &self.exitance
-    }
-
-    /// What the stages wrote, for copies and read-back.
-    #[must_use]
-    pub fn outputs(&self) -> Outputs<'_> {
-        self.buffers.outputs(&self.depth_maps, self.dual.as_ref())
-    }
-
     fn upload_pose(&self, queue: &wgpu::Queue, to_mm: Mat4) {
         let uniform = self.pose.layout(&self.extent, self.bounds.axis(), to_mm);
         queue.write_buffer(&self.buffers.deform_uniform, 0, bytemuck::bytes_of(&uniform));
@@ -464,86 +328,4 @@ impl Body {
         }
         self.sky.prepare(queue, subject, &self.shadows)
     }
-
-    /// Makes the kernel table anew where medium or profile changed or the body outgrew it, and what depends on the method.
-    fn refresh_kernel(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, diagonal: f32) {
-        let outgrown = self.scatter_stale || !self.kernel.fits(diagonal);
-        if !outgrown && !self.method_stale {
-            return;
-        }
-        if outgrown {
-            let channels = self.profile.channels(&self.medium);
-            self.table = self.kernel.write(queue, &channels, diagonal);
-            self.kind.monochrome = channels[1..].iter().all(|channel| Arc::ptr_eq(channel, &channels[0]));
-            self.smooth_length = crate::profile::smooth_length(&channels);
-        }
-        let smooth_length = self.smooth_length / self.greatest_scale;
-        let terms = self.profile.terms(&self.medium);
-        self.kind.oriented = self.profile.is_oriented();
-        let layout = Scatter::layout(self.table, smooth_length, terms, &self.tree, self.method);
-        if let Some(theta) = self.dual_theta() {
-            let (stage, tree) = (&self.stages.scatter.dual, &self.tree);
-            let demand = Demand { list_entries: self.list_entries, theta, evaluate: self.evaluated };
-            self.dual = self.dual.take().filter(|memory| memory.serves(demand, tree, &self.limits));
-            let memory = self
-                .dual
-                .get_or_insert_with(|| stage.memory(device, &self.buffers, &self.kernel.view, tree, demand));
-            memory.kind = self.kind;
-            memory.write(queue, &layout, tree, theta);
-        }
-        if self.method == Method::Pattern {
-            let (buffers, view, plan) = (&self.buffers, &self.kernel.view, &self.plan);
-            let memory = self.pattern.get_or_insert_with(|| PatternMemory::new(device, buffers, view, plan));
-            memory.write(queue, plan, self.table, &self.medium);
-        }
-        let uniforms = Scatter::uniforms(layout);
-        queue.write_buffer(&self.buffers.scatter_uniforms, 0, &uniforms);
-        self.pending.insert(StageSet::from_stage_on(Stage::Scatter));
-        self.scatter_stale = false;
-        self.method_stale = false;
-    }
-
-    /// Opening angle of the dual scatter, where that is the method.
-    fn dual_theta(&self) -> Option<f32> {
-        let narrowing = match self.method {
-            Method::Within { .. } if self.profile.is_oriented() => FLUX_NARROWING,
-            _ => 1.0,
-        };
-        match self.method.resolved() {
-            Method::Dual { theta } => Some(narrowing * theta),
-            _ => None,
-        }
-    }
-}
-
-/// The gradient of a second-order expansion is of first order: the same tolerance takes a narrower angle. Measured: 1.1 to 3.7 % at 0.65
-/// become 0.3 to 0.9 %.
-const FLUX_NARROWING: f32 = 0.65;
-
-/// Whether exitance can be evaluated there, and the device can hold what the method remembers.
-fn check_method(tree: &Tree, method: Method, evaluate: Evaluate, limits: &wgpu::Limits) -> Result<(), Error> {
-    if matches!(method.resolved(), Method::Dual { .. }) {
-        return dual::check(tree, evaluate, limits);
-    }
-    match evaluate {
-        Evaluate::PerTexel | Evaluate::Auto => Ok(()),
-        Evaluate::PerVertex | Evaluate::PerFragment => Err(Error::Frame {
-            problem: format!("{method:?} evaluated {evaluate:?}"),
-            remedy: "use the dual scatter, or evaluate per texel",
-        }),
-    }
-}
-
-/// Sources off the surface are seen from texels alone, and not by the pattern.
-fn check_kernel(profile: &Profile, method: Method, evaluate: Evaluate) -> Result<(), Error> {
-    if !profile.is_oriented() {
-        return Ok(());
-    }
-    let at_points = matches!(evaluate, Evaluate::PerVertex | Evaluate::PerFragment);
-    if method == Method::Pattern || at_points {
-        let problem = format!("sources off the surface, {method:?}, evaluated {evaluate:?}");
-        let remedy = "evaluate per texel by any other method, or take a radial profile";
-        return Err(Error::Frame { problem, remedy });
-    }
-    Ok(())
 }

@@ -1,0 +1,151 @@
+//! What a host may change between frames, and look at.
+
+use super::Body;
+use super::kernel::{check_kernel, check_method};
+use crate::buffers::Outputs;
+use crate::evaluate::Evaluate;
+use crate::stages::scatter::Method;
+use crate::stages::visibility::SkyMemory;
+use crate::stages::{Stage, StageSet};
+use crate::variation::{VERTEX_MARK, Variation};
+use crate::{Error, Medium, Profile, ShadowOptions};
+
+impl Body {
+    /// Changes how finely shadows are computed; the next frame looks anew from every light.
+    ///
+    /// # Errors
+    /// [`Error::Shadow`] names the number that cannot be.
+    pub fn set_shadows(&mut self, shadows: ShadowOptions) -> Result<(), Error> {
+        shadows.validate(self.limits.max_texture_dimension_2d)?;
+        let ShadowOptions { directions, direction_resolution, .. } = self.shadows;
+        if (directions, direction_resolution) != (shadows.directions, shadows.direction_resolution) {
+            self.sky = SkyMemory::new(&shadows);
+        }
+        self.shadows_stale |= shadows != self.shadows;
+        self.shadows = shadows;
+        Ok(())
+    }
+
+    /// How finely shadows are computed.
+    #[must_use]
+    pub fn shadows(&self) -> &ShadowOptions {
+        &self.shadows
+    }
+
+    /// Changes the medium; the next frame scatters anew, and gathers too if the index of refraction changed.
+    ///
+    /// # Errors
+    /// [`Error::Medium`] names the coefficient that cannot be.
+    pub fn set_medium(&mut self, medium: Medium) -> Result<(), Error> {
+        medium.validate()?;
+        self.scatter_stale |= medium != self.medium;
+        self.surface_stale |= medium.ior != self.medium.ior;
+        self.medium = medium;
+        self.exit_scale = self.profile.exit_scale(medium.ior);
+        Ok(())
+    }
+
+    /// Makes the medium differ from texel to texel of the atlas, or with `None` no more; the next frame clusters and scatters anew.
+    ///
+    /// # Errors
+    /// [`Error::Frame`] names the texel whose variation is out of range, or how many there are of how many.
+    pub fn set_variation(
+        &mut self,
+        queue: &wgpu::Queue,
+        variation: Option<&[Variation]>,
+    ) -> Result<(), Error> {
+        let texels = self.marks.len();
+        let variation = variation.unwrap_or_default();
+        if !variation.is_empty() && variation.len() != texels {
+            return Err(Error::Frame {
+                problem: format!("the medium varies over {} of {texels} texels", variation.len()),
+                remedy: "give one variation for each texel of the atlas",
+            });
+        }
+        variation.iter().enumerate().try_for_each(|(texel, v)| v.validate(texel))?;
+        let mut marks = self.marks.clone();
+        for (mark, v) in marks.iter_mut().zip(variation) {
+            *mark = *mark & VERTEX_MARK | v.mark();
+        }
+        queue.write_buffer(&self.buffers.marks, 0, bytemuck::cast_slice(&marks));
+        self.kind.scaled = variation.iter().any(|v| v.scale != 1.0);
+        self.greatest_scale = variation.iter().map(|v| v.scale).fold(1.0, f32::max);
+        self.method_stale = true;
+        self.pending.insert(StageSet::from_stage_on(Stage::Cluster));
+        Ok(())
+    }
+
+    /// Changes the profile; the next frame scatters anew, unless both are classical dipoles, which differ in how light leaves alone.
+    ///
+    /// # Errors
+    /// [`Error::Profile`] names the parameter that cannot be, [`Error::Medium`] the coefficient of a layer.
+    pub fn set_profile(&mut self, profile: Profile) -> Result<(), Error> {
+        profile.validate()?;
+        check_kernel(&profile, self.method, self.evaluate)?;
+        self.scatter_stale |= !profile.scatters_like(&self.profile);
+        self.exit_scale = profile.exit_scale(self.medium.ior);
+        self.profile = profile;
+        Ok(())
+    }
+
+    /// Changes how the scatter sum is evaluated; the next frame scatters anew.
+    ///
+    /// # Errors
+    /// [`Error::Frame`] for an opening angle outside its range, [`Error::Limit`] where the device cannot hold what the method remembers.
+    pub fn set_method(&mut self, method: Method) -> Result<(), Error> {
+        method.validate()?;
+        check_method(&self.tree, method, self.evaluate, &self.limits)?;
+        check_kernel(&self.profile, method, self.evaluate)?;
+        self.method_stale |= method != self.method;
+        self.method = method;
+        Ok(())
+    }
+
+    /// Changes where exitance is evaluated; the next frame scatters anew if that is elsewhere.
+    ///
+    /// # Errors
+    /// [`Error::Frame`] where the method has no points, [`Error::Limit`] where the device cannot hold what it remembers.
+    pub fn set_evaluate(&mut self, evaluate: Evaluate) -> Result<(), Error> {
+        check_method(&self.tree, self.method, evaluate, &self.limits)?;
+        check_kernel(&self.profile, self.method, evaluate)?;
+        self.evaluate = evaluate;
+        Ok(())
+    }
+
+    /// Where the last prepared frame is evaluated; never [`Evaluate::Auto`].
+    #[must_use]
+    pub fn evaluated(&self) -> Evaluate {
+        self.evaluated
+    }
+
+    /// The medium.
+    #[must_use]
+    pub fn medium(&self) -> &Medium {
+        &self.medium
+    }
+
+    /// The profile.
+    #[must_use]
+    pub fn profile(&self) -> &Profile {
+        &self.profile
+    }
+
+    /// Radiant exitance B over the atlas, `Rgba32Float`: linear RGB, alpha 1 where a texel or gutter is. Sample it with
+    /// [`translume_shaders::MATERIAL`].
+    #[must_use]
+    pub fn exitance_view(&self) -> &wgpu::TextureView {
+        &self.exitance_view
+    }
+
+    /// The texture behind [`exitance_view`](Self::exitance_view); it can be copied from.
+    #[must_use]
+    pub fn exitance_texture(&self) -> &wgpu::Texture {
+        &self.exitance
+    }
+
+    /// What the stages wrote, for copies and read-back.
+    #[must_use]
+    pub fn outputs(&self) -> Outputs<'_> {
+        self.buffers.outputs(&self.depth_maps, self.dual.as_ref())
+    }
+}
