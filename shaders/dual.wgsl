@@ -108,7 +108,7 @@ fn inner(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: v
             }
             pass_by(&w);
         }
-        if left == RUN || w.ended && left > 0u {
+        if left == RUN || (w.ended && left > 0u) {
             room = write_run(&own_head, left, local);
             left = 0u;
         }

@@ -25,6 +25,7 @@ struct Pattern {
 @group(0) @binding(4) var<storage, read> pixels: array<u32>;
 @group(0) @binding(5) var<storage, read_write> exitance: array<vec4f>;
 @group(0) @binding(6) var kernel_table: texture_2d<f32>;
+@group(0) @binding(7) var<storage, read> marks: array<u32>;
 
 const EMPTY: u32 = 0xffffffffu;
 // Samples along a side of the near grid, and of the ring around it.
@@ -42,7 +43,7 @@ fn collected(receiver: vec3f, place: vec2f, area: f32) -> vec4f {
     let source = texel_positions[texel];
     if texel_pixels[texel] != pixel || source.w == 0.0 { return vec4f(0.0); }
     let offset = receiver - source.xyz;
-    let power = texel_irradiance[texel].rgb * area;
+    let power = texel_irradiance[texel].rgb * marked_tint(marks[texel]) * area;
     return vec4f(power * area_averaged_profile(pattern.table, kernel_table, dot(offset, offset), 0.0, 0.0), 1.0);
 }
 
@@ -63,5 +64,5 @@ fn collect(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups:
         if all(steps == vec2f(0.0)) { continue; }
         sum += collected(receiver, centre + steps * pattern.far_step, pattern.far_area);
     }
-    exitance[index] = sum;
+    exitance[index] = sum * vec4f(marked_tint(marks[index]), 1.0);
 }

@@ -10,7 +10,7 @@ struct Scatter {
     top_level: u32,
     // Opening angle: a cluster is accepted when radius < theta·√(distance² + z_r²).
     theta_squared: f32,
-    // Square of the shortest mean free path of the three channels, mm².
+    // Square of the length below which all three channels are smooth, mm².
     z_r_squared: f32,
     padding0: u32,
     padding1: u32,
@@ -38,6 +38,8 @@ fn all_pairs(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) group
     for (var k = 0u; k < scatter.source_count; k++) { sum += sent(scatter.first_source + k, index, receiver, normal).rgb; }
     sum *= marked_tint(lamps[index].marks);
     if scatter.first_source > 0u { sum += exitance[index].rgb; }
+    // Flux may go in.
+    if scatter.first_source + scatter.source_count == scatter.texel_count { sum = max(sum, vec3f(0.0)); }
     exitance[index] = vec4f(sum, 0.0);
 }
 
@@ -77,5 +79,5 @@ fn tree(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: ve
         if !found { break; }
         sum += sent(source, index, receiver, normal).rgb;
     }
-    exitance[index] = vec4f(sum * marked_tint(lamps[index].marks), 0.0);
+    exitance[index] = vec4f(max(sum, vec3f(0.0)) * marked_tint(lamps[index].marks), 0.0);
 }

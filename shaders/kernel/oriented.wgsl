@@ -1,6 +1,8 @@
 // The kernel of sources off the surface: each term is a potential K about a point on the source's normal, and what leaves is its flux
 // through the receiver's, −∇K·n. The table holds K.
 
+// With scattering c times as strong depths become c times shorter, and K(r) becomes c·K(c·r).
+
 // The vector from each channel's source of a term to the receiver, RGB, component by component, mm.
 struct Offsets {
     x: vec3f,
@@ -9,7 +11,8 @@ struct Offsets {
 }
 
 fn offsets(term: Term, lamp: Lamp, d: vec3f) -> Offsets {
-    return Offsets(d.x + term.depth * lamp.normal.x, d.y + term.depth * lamp.normal.y, d.z + term.depth * lamp.normal.z);
+    let depth = term.depth * inverseSqrt(scale_square(lamp));
+    return Offsets(d.x + depth * lamp.normal.x, d.y + depth * lamp.normal.y, d.z + depth * lamp.normal.z);
 }
 
 // K and its derivatives by r², each channel at its own r.
@@ -25,7 +28,10 @@ fn jet_of_term(o: Offsets, lamp: Lamp, spread: f32, least_r2: f32) -> Jet {
 }
 
 fn jet_of_channel(d: vec3f, lamp: Lamp, spread: f32, least_r2: f32) -> Jet {
-    return profile_jet(scatter.table, kernel_table, max(dot(d, d), least_r2), spread * spread, facing(d, lamp));
+    let c2 = scale_square(lamp);
+    let jet = profile_jet(scatter.table, kernel_table, max(c2 * dot(d, d), least_r2), c2 * spread * spread, facing(d, lamp));
+    let c = sqrt(c2);
+    return Jet(c * jet.value, c * c2 * jet.first, c * c2 * c2 * jet.second);
 }
 
 // What a source sends to a point, and the one evaluation it took. own: the texel in whose middle the point is

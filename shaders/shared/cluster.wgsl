@@ -77,7 +77,7 @@ const VERTEX_MARK: u32 = 0x80000000u;
 
 // Factor on the scattering coefficients, in thirtieths of an octave from 1/4 to 4.
 fn marked_scale(marks: u32) -> f32 {
-    return exp2((f32(marks >> 24u & 127u) - 64.0) / 30.0);
+    return exp2((f32((marks >> 24u) & 127u) - 64.0) / 30.0);
 }
 
 fn scale_mark(scale: f32) -> u32 {

@@ -33,7 +33,7 @@ fn table_cell(table: KernelTable, r2: f32, s2: f32) -> TableCell {
 }
 
 // r2: squared distance, mm²     s2: squared rms radius of the source, mm²
-// facing: squared cosine between the source's mean normal and the connecting line       returns 1/mm²
+// facing: as in `shared/source.wgsl`, −1 to 1       returns 1/mm²
 fn area_averaged_profile(table: KernelTable, texels: texture_2d<f32>, r2: f32, s2: f32, facing: f32) -> vec3f {
     return profile_in_cell(table, texels, table_cell(table, r2, s2), facing);
 }

@@ -9,7 +9,7 @@ const LINK: u32 = 15u;
 
 // A node of the tree in one word.
 fn packed(level: u32, node: u32) -> u32 {
-    return level << 28u | node;
+    return (level << 28u) | node;
 }
 
 fn packed_level(entry: u32) -> u32 {

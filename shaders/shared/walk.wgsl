@@ -13,7 +13,7 @@ struct Dual {
     theta_squared: f32,
     // The same for single texels, which have no size.
     leaf_theta_squared: f32,
-    // Square of the shortest mean free path of the three channels, mm².
+    // Square of the length below which all three channels are smooth, mm².
     z_r_squared: f32,
     // Words there are in `lists`.
     capacity: u32,

@@ -105,8 +105,13 @@ pub const VERTICES: Shader = scatter!(
     "vertices.wgsl"
 );
 /// The same from a fixed pattern of the atlas, for comparison.
-pub const PATTERN: Shader =
-    shader!("pattern", "shared/dispatch.wgsl", "shared/kernel_table.wgsl", "pattern.wgsl");
+pub const PATTERN: Shader = shader!(
+    "pattern",
+    "shared/dispatch.wgsl",
+    "shared/cluster.wgsl",
+    "shared/kernel_table.wgsl",
+    "pattern.wgsl"
+);
 /// Dense texels → texture.
 pub const RESOLVE: Shader = shader!("resolve", "resolve.wgsl");
 /// The camera pass.

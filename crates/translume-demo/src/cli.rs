@@ -69,7 +69,7 @@ pub struct Render {
     /// Even out charts until every texel holds about the same area of the surface.
     #[arg(long)]
     pub even: bool,
-    /// Diffuse profile: dipole (the paper's formula to the letter), dipole-normalised, better-dipole, photon-beam, normalised-diffusion,
+    /// Diffuse profile: dipole (the paper's formula to the letter), dipole-normalised, dipole-oriented (its sources below and above the surface), better-dipole, photon-beam, normalised-diffusion,
     /// normalised-diffusion-searchlight; a dipole, the better one or photon-beam with -single adds light scattered once.
     #[arg(long, value_name = "NAME", default_value = "dipole-normalised")]
     pub profile: String,
@@ -77,9 +77,9 @@ pub struct Render {
     /// pattern (57 samples around a texel of the atlas, tens of percent off: for comparison).
     #[arg(long, value_name = "NAME", default_value = "dual")]
     pub method: String,
-    /// Error that dual keeps within: root mean square over the mean.
-    #[arg(long, value_name = "X", default_value_t = 0.01, conflicts_with = "theta")]
-    pub tolerance: f32,
+    /// Error that dual keeps within, root mean square over the mean: 0.0001 to 0.1, by default 0.01.
+    #[arg(long, value_name = "X", conflicts_with = "theta")]
+    pub tolerance: Option<f32>,
     /// Where exitance is evaluated: texel, vertex, fragment (with dual), or auto for whichever is cheapest and loses nothing.
     #[arg(long, value_name = "PLACE", default_value = "texel")]
     pub evaluate: String,

@@ -44,6 +44,7 @@ pub fn run(arguments: &Render) -> Result<(), Error> {
     }
     let profile = Profile::named(&arguments.profile)?;
     let method = method(arguments)?;
+    let evaluate = evaluate(arguments)?;
     let gpu = Gpu::new()?;
     let options = model::atlas_options(&arguments.layout, arguments.even)?;
     check_atlas(options.size, &gpu)?;
@@ -69,7 +70,7 @@ pub fn run(arguments: &Render) -> Result<(), Error> {
         medium: setup.medium,
         profile,
         method,
-        evaluate: evaluate(&arguments.evaluate)?,
+        evaluate,
         mm_per_unit: setup.mm_per_unit,
         flat_normals: setup.flat_normals,
         shadows: ShadowOptions {
@@ -127,28 +128,44 @@ pub fn run(arguments: &Render) -> Result<(), Error> {
 }
 
 fn method(arguments: &Render) -> Result<Method, Error> {
-    let angle = arguments.theta;
-    match arguments.method.as_str() {
-        "dual" => {
-            let within = Method::Within { tolerance: arguments.tolerance };
-            Ok(angle.map_or(within, |theta| Method::Dual { theta }))
-        }
-        "tree" => Ok(Method::Tree { theta: angle.unwrap_or(0.4) }),
-        "all-pairs" => Ok(Method::AllPairs),
-        "pattern" => Ok(Method::Pattern),
-        other => Err(Error::Option {
-            option: "--method",
-            problem: format!("no method is called \"{other}\"; known are dual, tree, all-pairs, pattern"),
-        }),
+    let name = arguments.method.as_str();
+    let fail = |option, problem| Err(Error::Option { option, problem });
+    if arguments.tolerance.is_some() && name != "dual" {
+        return fail("--tolerance", format!("{name} has none; only dual keeps a tolerance"));
+    }
+    if arguments.theta.is_some() && !matches!(name, "dual" | "tree") {
+        return fail("--theta", format!("{name} has no opening angle; dual and tree have"));
+    }
+    let tolerance = arguments.tolerance.unwrap_or(0.01);
+    if !(0.0001..=0.1).contains(&tolerance) {
+        return fail("--tolerance", format!("{tolerance} is not between 0.0001 and 0.1"));
+    }
+    if let Some(theta) = arguments.theta.filter(|theta| !(0.05..=2.0).contains(theta)) {
+        return fail("--theta", format!("{theta} is not between 0.05 and 2"));
+    }
+    match (name, arguments.theta) {
+        ("dual", None) => Ok(Method::Within { tolerance }),
+        ("dual", Some(theta)) => Ok(Method::Dual { theta }),
+        ("tree", theta) => Ok(Method::Tree { theta: theta.unwrap_or(0.4) }),
+        ("all-pairs", _) => Ok(Method::AllPairs),
+        ("pattern", _) => Ok(Method::Pattern),
+        (other, _) => fail(
+            "--method",
+            format!("no method is called \"{other}\"; known are dual, tree, all-pairs, pattern"),
+        ),
     }
 }
 
-fn evaluate(name: &str) -> Result<Evaluate, Error> {
-    let known = Evaluate::NAMES.iter().find(|(known, _)| *known == name);
-    known.map(|(_, evaluate)| *evaluate).ok_or_else(|| Error::Option {
-        option: "--evaluate",
-        problem: format!("\"{name}\" is no place; known are texel, vertex, fragment, auto"),
-    })
+fn evaluate(arguments: &Render) -> Result<Evaluate, Error> {
+    let name = arguments.evaluate.as_str();
+    let fail = |problem| Err(Error::Option { option: "--evaluate", problem });
+    match Evaluate::NAMES.iter().find(|(known, _)| *known == name) {
+        None => fail(format!("\"{name}\" is no place; known are texel, vertex, fragment, auto")),
+        Some((_, Evaluate::PerVertex | Evaluate::PerFragment)) if arguments.method != "dual" => {
+            fail(format!("{} is evaluated at texels alone; use dual", arguments.method))
+        }
+        Some((_, evaluate)) => Ok(*evaluate),
+    }
 }
 
 /// Fails before the unwrapping rather than after.

@@ -269,8 +269,9 @@ impl Body {
         self.never_prepared = false;
         self.surface_stale = false;
         self.shadows_stale = false;
+        self.refresh_table(queue, frame::diagonal(&corners));
         self.place_evaluation(queue, frame, &corners);
-        self.refresh_kernel(device, queue, frame::diagonal(&corners));
+        self.refresh_method(device, queue);
         if self.is_timed {
             self.timer.get_or_insert_with(|| Timer::new(device, queue)).next_frame();
         }

@@ -111,6 +111,13 @@ fn validate_shape(mesh: &Mesh, atlas: &Atlas) -> Result<(), Error> {
     if atlas.pixels.len() != (atlas.size as usize).pow(2) {
         return fail(format!("the atlas has {} pixels for {}²", atlas.pixels.len(), atlas.size), REBUILD);
     }
+    let strays = |texel: &u32| *texel != Atlas::EMPTY && *texel as usize >= atlas.texels.len();
+    if atlas.size == 0 || atlas.pixels.iter().any(strays) {
+        return fail("a pixel of the atlas shows a texel that is not there".to_owned(), REBUILD);
+    }
+    if let Some(k) = atlas.texels.iter().position(|t| t.pixel.iter().any(|&x| u32::from(x) >= atlas.size)) {
+        return fail(format!("texel {k} of the atlas lies outside of it"), REBUILD);
+    }
     if let Some(k) =
         atlas.texels.iter().position(|t| t.triangle as usize >= mesh.triangles.len() || !t.area.is_finite())
     {

@@ -23,9 +23,10 @@ pub enum Evaluate {
     /// At every fragment that [`Composite`](crate::Composite) draws, behind a depth pass where the target has depth ("FTF", Gong et al.
     /// 2008). The texture is not written.
     PerFragment,
-    /// Whichever of these has the fewest receivers and loses nothing: points only where the shortest mean free path is longer than a
-    /// texel; vertices only where edges are on average shorter than a texel or than half that path; fragments only with a
-    /// [`Frame::view`](crate::Frame::view).
+    /// For bodies that [`Composite`](crate::Composite) draws: whichever of these has the fewest receivers and loses nothing. Points only where
+    /// the profile is smooth over a texel (the shortest mean free path is longer; never for those without bound at r = 0); vertices only
+    /// where edges are on average shorter than a texel or than half that path; fragments only with a
+    /// [`Frame::view`](crate::Frame::view). [`Body::evaluated`](crate::Body::evaluated) says which.
     Auto,
 }
 
@@ -134,8 +135,10 @@ pub(crate) struct Candidates<'a> {
     pub edge: f32,
     /// Side of a typical texel.
     pub texel: f32,
-    /// Shortest mean free path.
+    /// Below which length light does not change.
     pub path: f32,
+    /// Where the frame before evaluated.
+    pub last: Evaluate,
     pub view: Option<&'a View>,
     /// Of the box around the body, world units.
     pub corners: [Vec3; 8],
@@ -144,8 +147,11 @@ pub(crate) struct Candidates<'a> {
 impl Candidates<'_> {
     /// The place with the fewest receivers.
     pub fn choose(&self) -> Evaluate {
-        let mut best = (self.texels as f32, Evaluate::PerTexel);
+        // Another place needs other memory: it has to be a fifth cheaper.
+        let stay = |place| if place == self.last { 0.8 } else { 1.0 };
+        let mut best = (self.texels as f32 * stay(Evaluate::PerTexel), Evaluate::PerTexel);
         let mut consider = |receivers: f32, place| {
+            let receivers = receivers * stay(place);
             if receivers < best.0 {
                 best = (receivers, place);
             }
@@ -219,7 +225,8 @@ mod tests {
         let far = view(100.0);
         let body = |vertices, edge, path, view| {
             let corners = cube();
-            Candidates { texels: 40_000, vertices, edge, texel: 0.5, path, view, corners }.choose()
+            let last = Evaluate::PerTexel;
+            Candidates { texels: 40_000, vertices, edge, texel: 0.5, path, last, view, corners }.choose()
         };
         assert_eq!(body(20_000, 0.4, 0.6, None), Evaluate::PerVertex, "edges below a texel");
         assert_eq!(body(20_000, 0.4, 0.1, None), Evaluate::PerTexel, "texels would show");

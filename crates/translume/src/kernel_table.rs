@@ -2,8 +2,8 @@
 //!
 //! A texel or cluster is not a point. Averaging R_d over its disc keeps the sum right from mean free paths far below a texel
 //! (the disc around the receiver itself then holds all the energy) to far above. Averages are computed once per medium, in the
-//! logarithm so that nothing underflows, for the disc lying along r and for the disc facing r; WGSL blends the two by the
-//! squared cosine between the source's normal and r.
+//! logarithm so that nothing underflows, for the disc lying along r and for the disc facing r; WGSL blends the two by
+//! how far the source reaches along r.
 
 use crate::profile::Channels;
 use crate::profile::radial::Radial;

@@ -82,12 +82,7 @@ impl Medium {
         )
     }
 
-    /// Mean free path of light in the channel where it is shortest, mm; 10¹² where nothing scatters.
-    pub(crate) fn shortest_path(&self) -> f32 {
-        self.mean_free_paths().fold(1e12, f32::min)
-    }
-
-    /// Of the channels that scatter, mm.
+    /// Mean free paths of the channels that scatter, mm.
     pub(crate) fn mean_free_paths(&self) -> impl Iterator<Item = f32> {
         let channels = self.sigma_s_prime.into_iter().zip(self.sigma_a);
         channels.filter(|(scattering, _)| *scattering > 0.0).map(|(s, a)| 1.0 / (s + a))

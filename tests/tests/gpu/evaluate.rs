@@ -149,6 +149,23 @@ fn what_a_view_needs_is_there_and_the_rest_is_not() {
     holds(partial(&creature(), Evaluate::PerFragment, elsewhere).map(|_| ()));
 }
 
+/// From inside of a closed body everything faces away.
+#[test]
+fn an_eye_inside_sees_the_inside() {
+    let inside = Shot { eye: [0.0, 40.0, 0.0], target: [0.0, 48.0, 60.0], fov: 1.5, size: 32 };
+    let shown = |view: Option<View>| {
+        let mut fixture = body(&creature(), Medium::SKIMMILK, Evaluate::PerTexel, 32);
+        run(&mut fixture, view);
+        inside.take(&fixture)
+    };
+    let whole = shown(None);
+    let check = |part: &[[f32; 4]]| at_most("from inside", apart(part, &whole).0, 0.02);
+    holds(check(&shown(Some(View { camera: inside.camera(), pixels: [32; 2] }))));
+    let [x, y, z] = SHOT.eye;
+    let behind = Shot { eye: [-x, y, -z], ..SHOT };
+    notices(check(&shown(Some(View { camera: behind.camera(), ..view() }))));
+}
+
 #[test]
 fn auto_chooses_by_cost() {
     let chosen = |model: &Arc<Model>, medium: Medium, view: Option<View>| {
@@ -195,5 +212,10 @@ fn places_can_change() {
             let first = first.get_or_insert_with(|| picture.clone());
             assert_eq!(bytemuck::cast_slice::<_, u8>(first), bytemuck::cast_slice::<_, u8>(&picture));
         }
+        let at_vertices = fixture.body.outputs().vertex_exitance.is_some();
+        assert_eq!(at_vertices, evaluate == Evaluate::PerVertex);
     }
+    fixture.body.set_method(Method::AllPairs).unwrap();
+    run(&mut fixture, None);
+    assert!(fixture.body.outputs().vertex_exitance.is_none() && fixture.body.outputs().lists.is_none());
 }

@@ -1,6 +1,6 @@
 //! A medium that differs from texel to texel.
 
-use translume::{DirectionalLight, Error, Evaluate, Light, Medium, Method, Variation, readback};
+use translume::{DirectionalLight, Error, Evaluate, Light, Medium, Method, Profile, Variation, readback};
 use translume_reference::scatter;
 use translume_tests::{
     Check, Fixture, Pose, Shot, at_most, creature, dipoles, gpu, holds, notices, relative_rmse, sphere_with,
@@ -29,22 +29,31 @@ fn times(medium: Medium, factor: f32) -> Medium {
 }
 
 /// Everywhere the same factor, against a medium of so many times its coefficients.
-fn scaled(method: Method, factor: f32, times_as_much: f32) -> Check {
-    let mut fixture = body(Medium::SKIN1, method);
+fn scaled(profile: &Profile, method: Method, factor: f32, times_as_much: f32) -> Check {
+    let of = |medium| {
+        let mut fixture = body(medium, method);
+        fixture.body.set_profile(profile.clone()).unwrap();
+        fixture
+    };
+    let mut fixture = of(Medium::SKIN1);
     let everywhere =
         vec![Variation { scale: factor, ..Variation::default() }; fixture.model.atlas.texels.len()];
     let measured = exitance(&mut fixture, Some(&everywhere));
-    let expected = exitance(&mut body(times(Medium::SKIN1, times_as_much), method), None);
-    // Two tables of the same kernel, each within 0.5 % of it.
-    at_most(&format!("{method:?}, {factor} times"), relative_rmse(&measured, &expected), 5e-3)
+    let expected = exitance(&mut of(times(Medium::SKIN1, times_as_much)), None);
+    // Two tables of the same kernel, each within 0.5 % of it. Off the surface of a body as small as two mean free paths sources come close to
+    // receivers, and the kernel is steep: measured 1.2 %.
+    let bound = if *profile == Profile::DipoleOriented { 0.02 } else { 0.01 };
+    at_most(&format!("{profile:?}, {method:?}, {factor} times"), relative_rmse(&measured, &expected), bound)
 }
 
 #[test]
 fn a_factor_everywhere_is_another_medium() {
     for method in [WITHIN, Method::Tree { theta: 0.2 }, Method::AllPairs] {
         for factor in [0.25, 0.5, 2.0, 4.0] {
-            holds(scaled(method, factor, factor));
-            notices(scaled(method, factor, 1.1 * factor));
+            for profile in [Profile::Dipole, Profile::DipoleOriented] {
+                holds(scaled(&profile, method, factor, factor));
+                notices(scaled(&profile, method, factor, 1.1 * factor));
+            }
         }
     }
 }
@@ -125,6 +134,22 @@ fn patches_are_seen_at_points() {
     }
 }
 
+/// The paper's pattern heeds the albedo on both ends.
+#[test]
+fn the_pattern_is_tinted() {
+    let shown = |albedo: f32| {
+        let mut fixture = body(Medium::SKIN1, Method::Pattern);
+        let everywhere = Variation { albedo: [albedo; 3], ..Variation::default() };
+        let variation = vec![everywhere; fixture.model.atlas.texels.len()];
+        exitance(&mut fixture, Some(&variation))
+    };
+    let quarter: Vec<_> = shown(1.0).iter().map(|b| b.map(|b| 0.25 * b)).collect();
+    let check = |albedo| at_most("pattern: tint", relative_rmse(&shown(albedo), &quarter), 0.01);
+    // Half of 255 is no whole number: 0.8 %.
+    holds(check(0.25));
+    notices(check(0.26));
+}
+
 /// An evenly lit closed body times its albedo; and back again.
 #[test]
 fn albedo_multiplies_an_even_surface() {
@@ -158,6 +183,7 @@ fn what_cannot_vary_is_named() {
         error.to_string()
     };
     assert!(refused(&variation[1..]).contains("texels"));
+    assert!(refused(&[]).contains("0 of"));
     variation[7].albedo[1] = f32::NAN;
     assert!(refused(&variation).contains("texel 7"));
     variation[7] = Variation { scale: 5.0, ..Variation::default() };

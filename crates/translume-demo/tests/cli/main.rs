@@ -47,7 +47,12 @@ fn options_that_cannot_be_are_named() {
     refused(&desk, &[&mesh, "--atlas", "3"], &["3"]);
     refused(&desk, &[&mesh, "--size", "16000", "--samples", "8"], &["--size", "16000"]);
     refused(&desk, &[&mesh, "--mm-per-unit", "0"], &["ok.obj", "mm per unit"]);
-    refused(&desk, &[&mesh, "--theta", "9"], &["opening angle 9"]);
+    refused(&desk, &[&mesh, "--theta", "9"], &["--theta", "9 is not between"]);
+    refused(&desk, &[&mesh, "--theta", "0.5", "--method", "all-pairs"], &["--theta", "all-pairs"]);
+    refused(&desk, &[&mesh, "--tolerance", "0"], &["--tolerance", "0 is not between"]);
+    refused(&desk, &[&mesh, "--tolerance", "0.01", "--method", "tree"], &["--tolerance", "tree"]);
+    refused(&desk, &[&mesh, "--evaluate", "pixel"], &["--evaluate", "pixel", "fragment"]);
+    refused(&desk, &[&mesh, "--evaluate", "vertex", "--method", "tree"], &["--evaluate", "tree"]);
     refused(&desk, &[&mesh, "--morph", "0.5"], &["--morph", "0 morph targets"]);
     refused(&desk, &[&mesh, "--twist", "60000"], &["--twist", "60000 degrees", "57296"]);
     refused(&desk, &[&mesh, "--bend=-inf"], &["--bend", "-inf"]);

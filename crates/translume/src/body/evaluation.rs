@@ -20,7 +20,7 @@ impl Body {
         let evaluate = self.choose(frame.view.as_ref(), corners);
         self.method_stale |= evaluate != self.evaluated;
         self.evaluated = evaluate;
-        let need = self.need(frame.view.as_ref());
+        let need = self.need(frame.view.as_ref(), corners);
         if need != self.need {
             queue.write_buffer(&self.buffers.need, 0, bytemuck::bytes_of(&need));
             self.pending.insert(StageSet::from_stage_on(Stage::Cluster));
@@ -43,14 +43,15 @@ impl Body {
             vertices: self.extent.vertices,
             edge: scale * self.shape.edge,
             texel: scale * self.shape.texel,
-            path: self.medium.shortest_path() / self.greatest_scale,
+            path: self.smooth_length / self.greatest_scale,
+            last: self.evaluated,
             view,
             corners: corners.map(|corner| corner / self.mm_per_unit),
         }
         .choose()
     }
 
-    fn need(&self, view: Option<&View>) -> NeedLayout {
+    fn need(&self, view: Option<&View>, corners: &[Vec3; 8]) -> NeedLayout {
         if self.evaluated == Evaluate::PerVertex {
             return NeedLayout { kind: UNDER_VERTICES | POINTS, ..NeedLayout::default() };
         }
@@ -58,12 +59,17 @@ impl Body {
         let Some(View { camera, .. }) = view.filter(|_| self.dual_theta().is_some()) else {
             return NeedLayout { kind: points, ..NeedLayout::default() };
         };
+        let eye = Vec3::from(camera.eye) * self.mm_per_unit;
+        // From inside of it a closed body is seen from behind.
+        let (low, high) =
+            corners.iter().fold((corners[0], corners[0]), |(low, high), c| (low.min(*c), high.max(*c)));
+        let is_outside = eye.cmplt(low).any() || eye.cmpgt(high).any();
         let to_world = Mat4::from_scale(Vec3::splat(1.0 / self.mm_per_unit));
         NeedLayout {
             view_projection: (Mat4::from_cols_array_2d(&camera.view_projection) * to_world)
                 .to_cols_array_2d(),
-            eye: camera.eye.map(|x| x * self.mm_per_unit),
-            kind: points | IN_VIEW | if self.shape.closed { FACING } else { 0 },
+            eye: eye.to_array(),
+            kind: points | IN_VIEW | if self.shape.closed && is_outside { FACING } else { 0 },
         }
     }
 

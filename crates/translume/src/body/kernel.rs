@@ -12,21 +12,27 @@ use crate::stages::{Stage, StageSet};
 use std::sync::Arc;
 
 impl Body {
-    /// Makes the kernel table anew where medium or profile changed or the body outgrew it, and what depends on the method.
-    pub(super) fn refresh_kernel(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, diagonal: f32) {
-        let outgrown = self.scatter_stale || !self.kernel.fits(diagonal);
-        if !outgrown && !self.method_stale {
+    /// Makes the kernel table anew where medium or profile changed or the body outgrew it.
+    pub(super) fn refresh_table(&mut self, queue: &wgpu::Queue, diagonal: f32) {
+        if !self.scatter_stale && self.kernel.fits(diagonal) {
             return;
         }
-        if outgrown {
-            let channels = self.profile.channels(&self.medium);
-            self.table = self.kernel.write(queue, &channels, diagonal);
-            self.kind.monochrome = channels[1..].iter().all(|channel| Arc::ptr_eq(channel, &channels[0]));
-            self.smooth_length = smooth_length(&channels);
+        let channels = self.profile.channels(&self.medium);
+        self.table = self.kernel.write(queue, &channels, diagonal);
+        self.kind.monochrome = channels[1..].iter().all(|channel| Arc::ptr_eq(channel, &channels[0]));
+        self.kind.oriented = self.profile.is_oriented();
+        self.smooth_length = smooth_length(&channels);
+        self.scatter_stale = false;
+        self.method_stale = true;
+    }
+
+    /// Makes anew what depends on the method, or on the table.
+    pub(super) fn refresh_method(&mut self, device: &wgpu::Device, queue: &wgpu::Queue) {
+        if !self.method_stale {
+            return;
         }
         let smooth_length = self.smooth_length / self.greatest_scale;
         let terms = self.profile.terms(&self.medium);
-        self.kind.oriented = self.profile.is_oriented();
         let layout = Scatter::layout(self.table, smooth_length, terms, &self.tree, self.method);
         if let Some(theta) = self.dual_theta() {
             let (stage, tree) = (&self.stages.scatter.dual, &self.tree);
@@ -37,6 +43,10 @@ impl Body {
                 .get_or_insert_with(|| stage.memory(device, &self.buffers, &self.kernel.view, tree, demand));
             memory.kind = self.kind;
             memory.write(queue, &layout, tree, theta);
+            stage.compile(memory);
+        } else {
+            self.dual = None;
+            self.stages.scatter.compile(self.method, self.kind);
         }
         if self.method == Method::Pattern {
             let (buffers, view, plan) = (&self.buffers, &self.kernel.view, &self.plan);
@@ -46,7 +56,6 @@ impl Body {
         let uniforms = Scatter::uniforms(layout);
         queue.write_buffer(&self.buffers.scatter_uniforms, 0, &uniforms);
         self.pending.insert(StageSet::from_stage_on(Stage::Scatter));
-        self.scatter_stale = false;
         self.method_stale = false;
     }
 

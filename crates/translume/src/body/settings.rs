@@ -46,6 +46,7 @@ impl Body {
     }
 
     /// Makes the medium differ from texel to texel of the atlas, or with `None` no more; the next frame clusters and scatters anew.
+    /// [`Method::Pattern`] heeds the albedo alone.
     ///
     /// # Errors
     /// [`Error::Frame`] names the texel whose variation is out of range, or how many there are of how many.
@@ -55,13 +56,13 @@ impl Body {
         variation: Option<&[Variation]>,
     ) -> Result<(), Error> {
         let texels = self.marks.len();
-        let variation = variation.unwrap_or_default();
-        if !variation.is_empty() && variation.len() != texels {
+        if let Some(count) = variation.map(<[_]>::len).filter(|count| *count != texels) {
             return Err(Error::Frame {
-                problem: format!("the medium varies over {} of {texels} texels", variation.len()),
+                problem: format!("the medium varies over {count} of {texels} texels"),
                 remedy: "give one variation for each texel of the atlas",
             });
         }
+        let variation = variation.unwrap_or_default();
         variation.iter().enumerate().try_for_each(|(texel, v)| v.validate(texel))?;
         let mut marks = self.marks.clone();
         for (mark, v) in marks.iter_mut().zip(variation) {

@@ -1,6 +1,6 @@
 //! Composite: the camera's view of a body, L_o = F_t(η, ω_o)·B/π, and what its surface reflects.
 //!
-//! reads  positions, normals, exitance of texels, vertices or points       writes  the host's colour and depth attachments
+//! reads  corners (position and normal in the atlas' order), exitance of texels, vertices or points       writes  the host's colour and depth attachments
 //! twin   `translume_reference::composite`           WGSL    `composite.wgsl`
 
 use crate::gpu::{self, DEPTH_MAPS, FLOAT_TEXTURE, MediumKind, UNIFORM};
@@ -154,7 +154,8 @@ impl Composite {
         }
     }
 
-    /// Records one draw, or two where exitance is summed up at fragments. Call [`CompositeView::prepare`] before the pass begins.
+    /// Records one draw, or two where exitance is summed up at fragments. The first body evaluated elsewhere than at texels makes its
+    /// pipeline here. Call [`CompositeView::prepare`] before the pass begins.
     pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>, view: &CompositeView) {
         pass.set_bind_group(0, &view.group, &[]);
         pass.set_vertex_buffer(0, view.vertices.slice(..));

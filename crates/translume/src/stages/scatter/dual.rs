@@ -35,6 +35,8 @@ pub(crate) struct Dual {
     pub points: Points,
 }
 
+const _: () = assert!(size_of::<DualLayout>() as u64 <= UNIFORM_STRIDE);
+
 /// What the dual scatter of one body remembers during a frame.
 pub(crate) struct DualMemory {
     uniforms: wgpu::Buffer,
@@ -163,6 +165,16 @@ impl Dual {
             evaluate,
             kind: MediumKind::default(),
             points,
+        }
+    }
+
+    /// Makes the pipelines of a body, so that no frame has to.
+    pub fn compile(&self, memory: &DualMemory) {
+        self.inner.get(memory.kind);
+        match memory.points {
+            Some(PointMemory::Vertices { .. }) => _ = self.points.vertices.get(memory.kind),
+            Some(PointMemory::Fragments { .. }) => (),
+            None => _ = self.leaf.get(memory.kind),
         }
     }
 

@@ -173,6 +173,16 @@ impl Scatter {
         bytes
     }
 
+    /// Makes the pipeline of a method that walks alone, so that no frame has to.
+    pub fn compile(&self, method: Method, kind: MediumKind) {
+        match method {
+            Method::AllPairs => _ = self.all_pairs.get(kind),
+            Method::Tree { .. } => _ = self.tree.get(kind),
+            // These have their own.
+            Method::Dual { .. } | Method::Within { .. } | Method::Pattern => (),
+        }
+    }
+
     pub fn encode(
         &self,
         pass: &mut Pass<'_>,

@@ -79,7 +79,7 @@ impl PatternMemory {
         kernel_table: &wgpu::TextureView,
         plan: &Plan,
     ) -> Self {
-        let types = [UNIFORM, READ, READ, READ, READ, WRITE, FLOAT_TEXTURE];
+        let types = [UNIFORM, READ, READ, READ, READ, WRITE, FLOAT_TEXTURE, READ];
         let layout = gpu::layout(device, "pattern", wgpu::ShaderStages::COMPUTE, &types);
         let module = gpu::module(device, translume_shaders::PATTERN);
         let uniform = gpu::uniform_buffer(device, "pattern", size_of::<PatternLayout>() as u64);
@@ -93,6 +93,7 @@ impl PatternMemory {
             buffers.pixels.as_entire_binding(),
             buffers.exitance.as_entire_binding(),
             wgpu::BindingResource::TextureView(kernel_table),
+            buffers.marks.as_entire_binding(),
         ];
         let group = gpu::bind(device, "pattern", &layout, &resources);
         Self { collect: gpu::compute_pipeline(device, &layout, &module, "collect"), uniform, group }

@@ -15,7 +15,7 @@ pub(crate) struct Points {
     /// Exitance of the vertices, for [`Composite`](crate::Composite).
     pub seen: wgpu::BindGroupLayout,
     vertices_layout: wgpu::BindGroupLayout,
-    vertices: PerMedium,
+    pub vertices: PerMedium,
 }
 
 /// What a body whose exitance is evaluated at points remembers.
