@@ -125,64 +125,67 @@ fn from_clusters(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) g
 }
 
 fn store(node: u32, children: ptr<function, array<Cluster, 4>>, count: u32, receiver: Receiver) {
-    let cluster = merge(children, count);
+    let weights = weigh(children, count);
+    let cluster = merge(children, count, weights);
     clusters[level.node_offset + node] = cluster;
     receivers[level.node_offset + node] = receiver;
     let size = select(0.0, max(size_of(cluster.spread, cluster.radius), NO_SIZE), any(cluster.power > vec3f(0.0)));
     bounds[level.source_offset + node] = vec4f(cluster.centroid, size);
-    lamps[level.source_offset + node] = Lamp(cluster.power, cluster.spread, cluster.normal, mean_scale(node, children, count), packed_moments(moments(node, cluster, children, count)), 0u);
+    lamps[level.source_offset + node] = Lamp(cluster.power, cluster.spread, cluster.normal, mean_scale(node, weights), packed_moments(moments(node, cluster, children, weights)), 0u);
     let extent = select(NOT_NEEDED, size_of(receiver.spread, receiver.radius), receiver.texels > 0u);
     bounds[level.receiver_offset + node] = vec4f(receiver.centre, extent);
 }
 
-// Second moments of a cluster over spread², as children weigh in `merge`.
-fn moments(node: u32, cluster: Cluster, children: ptr<function, array<Cluster, 4>>, count: u32) -> Moments {
-    let total = dot(cluster.power, vec3f(1.0));
+// Second moments of a cluster over spread².
+fn moments(node: u32, cluster: Cluster, children: ptr<function, array<Cluster, 4>>, weights: vec4f) -> Moments {
     var sum = Moments(vec3f(0.0), vec3f(0.0));
-    for (var k = 0u; k < count; k++) {
-        var weight = 1.0 / f32(count);
-        if total > 0.0 { weight = dot((*children)[k].power, vec3f(1.0)) / total; }
+    for (var k = 0u; k < 4u; k++) {
+        if weights[k] == 0.0 { continue; }
         let own = unpacked_moments(lamps[level.child_sources + node * 4u + k].moments);
         let offset = (*children)[k].centroid - cluster.centroid;
         let spread = (*children)[k].spread;
-        sum.diagonal += weight * (spread * spread * own.diagonal + offset * offset);
-        sum.mixed += weight * (spread * spread * own.mixed + offset.xxy * offset.yzz);
+        sum.diagonal += weights[k] * (spread * spread * own.diagonal + offset * offset);
+        sum.mixed += weights[k] * (spread * spread * own.mixed + offset.xxy * offset.yzz);
     }
     let trace = sum.diagonal.x + sum.diagonal.y + sum.diagonal.z;
     let scale = select(0.0, 1.0 / trace, trace > 0.0);
     return Moments(scale * sum.diagonal, scale * sum.mixed);
 }
 
-// How far light wanders from a cluster: the mean over its power.
-fn mean_scale(node: u32, children: ptr<function, array<Cluster, 4>>, count: u32) -> u32 {
+// How far light wanders from a cluster.
+fn mean_scale(node: u32, weights: vec4f) -> u32 {
     var sum = 0.0;
-    var total = 0.0;
-    for (var k = 0u; k < count; k++) {
-        let power = dot((*children)[k].power, vec3f(1.0));
-        sum += power * marked_scale(lamps[level.child_sources + node * 4u + k].marks);
-        total += power;
+    for (var k = 0u; k < 4u; k++) {
+        if weights[k] > 0.0 { sum += weights[k] * marked_scale(lamps[level.child_sources + node * 4u + k].marks); }
     }
-    return scale_mark(select(1.0, sum / total, total > 0.0));
+    return scale_mark(sum / dot(weights, vec4f(1.0)));
 }
 
 // Children weigh by their power; where none has any, by area; where none has that either, equally.
-fn merge(children: ptr<function, array<Cluster, 4>>, count: u32) -> Cluster {
+fn weigh(children: ptr<function, array<Cluster, 4>>, count: u32) -> vec4f {
+    var total = 0.0;
+    var area = 0.0;
+    for (var k = 0u; k < count; k++) {
+        total += dot((*children)[k].power, vec3f(1.0));
+        area += (*children)[k].area;
+    }
+    var weights = vec4f(0.0);
+    for (var k = 0u; k < count; k++) {
+        weights[k] = 1.0;
+        if total > 0.0 { weights[k] = dot((*children)[k].power, vec3f(1.0)) / total; }
+        else if area > 0.0 { weights[k] = (*children)[k].area / area; }
+    }
+    return weights;
+}
+
+fn merge(children: ptr<function, array<Cluster, 4>>, count: u32, weights: vec4f) -> Cluster {
     var power = vec3f(0.0);
     var area = 0.0;
     for (var k = 0u; k < count; k++) {
         power += (*children)[k].power;
         area += (*children)[k].area;
     }
-    let total = dot(power, vec3f(1.0));
-    var weights: vec4f;
-    var sum = 0.0;
-    for (var k = 0u; k < count; k++) {
-        var w = 1.0;
-        if total > 0.0 { w = dot((*children)[k].power, vec3f(1.0)) / total; }
-        else if area > 0.0 { w = (*children)[k].area / area; }
-        weights[k] = w;
-        sum += w;
-    }
+    let sum = dot(weights, vec4f(1.0));
     var centroid = vec3f(0.0);
     var normal = vec3f(0.0);
     for (var k = 0u; k < count; k++) {

@@ -11,19 +11,7 @@ fn collect(e: ptr<function, Expansion>, lamp: Lamp, d: vec3f, least_r2: f32) {
     let c2 = scale_square(lamp);
     let r2 = max(c2 * dot(d, d), least_r2);
     let jet = profile_jet(scatter.table, kernel_table, r2, c2 * lamp.spread * lamp.spread, facing(d, lamp));
-    let power = c2 * lamp.power;
-    let first = 2.0 * c2 * power * jet.first;
-    let second = 4.0 * c2 * c2 * power * jet.second;
-    (*e).value += power * jet.value;
-    (*e).x += first * d.x;
-    (*e).y += first * d.y;
-    (*e).z += first * d.z;
-    (*e).xx += second * (d.x * d.x) + first;
-    (*e).yy += second * (d.y * d.y) + first;
-    (*e).zz += second * (d.z * d.z) + first;
-    (*e).xy += second * (d.x * d.y);
-    (*e).xz += second * (d.x * d.z);
-    (*e).yz += second * (d.y * d.z);
+    add(e, c2 * lamp.power, Jet(jet.value, c2 * jet.first, c2 * c2 * jet.second), Offsets(vec3f(d.x), vec3f(d.y), vec3f(d.z)));
 }
 
 // What an expansion says that leaves along a normal.

@@ -3,13 +3,7 @@
 
 // With scattering c times as strong depths become c times shorter, and K(r) becomes c·K(c·r).
 
-// The vector from each channel's source of a term to the receiver, RGB, component by component, mm.
-struct Offsets {
-    x: vec3f,
-    y: vec3f,
-    z: vec3f,
-}
-
+// From each channel's source of a term to the receiver.
 fn offsets(term: Term, lamp: Lamp, d: vec3f) -> Offsets {
     let depth = term.depth * inverseSqrt(scale_square(lamp));
     return Offsets(d.x + depth * lamp.normal.x, d.y + depth * lamp.normal.y, d.z + depth * lamp.normal.z);
@@ -52,19 +46,7 @@ fn collect(e: ptr<function, Expansion>, lamp: Lamp, d: vec3f, least_r2: f32) {
     for (var k = 0u; k < 2u; k++) {
         let o = offsets(scatter.terms[k], lamp, d);
         let jet = jet_of_term(o, lamp, lamp.spread, least_r2);
-        let power = lamp.power * scatter.terms[k].weight;
-        let first = 2.0 * power * jet.first;
-        let second = 4.0 * power * jet.second;
-        (*e).value += power * jet.value;
-        (*e).x += first * o.x;
-        (*e).y += first * o.y;
-        (*e).z += first * o.z;
-        (*e).xx += second * (o.x * o.x) + first;
-        (*e).yy += second * (o.y * o.y) + first;
-        (*e).zz += second * (o.z * o.z) + first;
-        (*e).xy += second * (o.x * o.y);
-        (*e).xz += second * (o.x * o.z);
-        (*e).yz += second * (o.y * o.z);
+        add(e, lamp.power * scatter.terms[k].weight, jet, o);
     }
 }
 

@@ -78,3 +78,26 @@ struct Term {
     weight: vec3f,
     padding1: u32,
 }
+
+// From sources to a receiver, RGB, component by component, mm: each channel may have its source elsewhere.
+struct Offsets {
+    x: vec3f,
+    y: vec3f,
+    z: vec3f,
+}
+
+// Adds what sources of this power send to the receivers about a point so far from them.
+fn add(e: ptr<function, Expansion>, power: vec3f, jet: Jet, o: Offsets) {
+    let first = 2.0 * power * jet.first;
+    let second = 4.0 * power * jet.second;
+    (*e).value += power * jet.value;
+    (*e).x += first * o.x;
+    (*e).y += first * o.y;
+    (*e).z += first * o.z;
+    (*e).xx += second * (o.x * o.x) + first;
+    (*e).yy += second * (o.y * o.y) + first;
+    (*e).zz += second * (o.z * o.z) + first;
+    (*e).xy += second * (o.x * o.y);
+    (*e).xz += second * (o.x * o.z);
+    (*e).yz += second * (o.y * o.z);
+}

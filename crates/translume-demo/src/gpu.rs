@@ -1,6 +1,7 @@
 //! An adapter and its device.
 
 use crate::error::Error;
+use std::time::Instant;
 use translume::wgpu;
 
 /// A device and the name of the adapter behind it.
@@ -35,5 +36,14 @@ impl Gpu {
         let (device, queue) = pollster::block_on(adapter.request_device(&descriptor))
             .map_err(|error| Error::NoDevice { adapter: name.clone(), reason: error.to_string() })?;
         Ok(Self { device, queue, adapter: name })
+    }
+
+    /// Runs commands; from submission to their end, ms.
+    pub fn time(&self, commands: wgpu::CommandBuffer) -> Result<f64, Error> {
+        let start = Instant::now();
+        self.queue.submit([commands]);
+        let waited = self.device.poll(wgpu::PollType::wait_indefinitely());
+        waited.map_err(|error| translume::Error::ReadBack(error.to_string()))?;
+        Ok(1e3 * start.elapsed().as_secs_f64())
     }
 }

@@ -40,7 +40,7 @@ struct Target {
 impl Bounds {
     const EMPTY: Self = Self { low: Vec3::INFINITY, high: Vec3::NEG_INFINITY };
 
-    fn around(points: impl Iterator<Item = Vec3>) -> Self {
+    pub fn around(points: impl Iterator<Item = Vec3>) -> Self {
         points.fold(Self::EMPTY, |Self { low, high }, p| Self { low: low.min(p), high: high.max(p) })
     }
 
@@ -53,6 +53,10 @@ impl Bounds {
         let low = self.low.max(other.low);
         // Rounding must not turn a flat box inside out.
         Self { low, high: self.high.min(other.high).max(low) }
+    }
+
+    pub fn contains(self, point: Vec3) -> bool {
+        self.low.cmple(point).all() && point.cmple(self.high).all()
     }
 
     fn grown(self, by: f32) -> Self {

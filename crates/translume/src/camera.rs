@@ -1,7 +1,7 @@
 //! Where the picture is taken from.
 
-use glam::Vec3;
 use glam::camera::rh::{proj, view};
+use glam::{Mat4, Vec3};
 
 /// A camera, in the host's world units. Clip space is wgpu's: x right, y up, depth 0..1.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -10,6 +10,15 @@ pub struct Camera {
     pub view_projection: [[f32; 4]; 4],
     /// The eye's position.
     pub eye: [f32; 3],
+}
+
+impl Camera {
+    /// Millimetres to clip space, and the eye in millimetres.
+    pub(crate) fn in_mm(&self, mm_per_unit: f32) -> ([[f32; 4]; 4], [f32; 3]) {
+        let to_world = Mat4::from_scale(Vec3::splat(1.0 / mm_per_unit));
+        let view_projection = Mat4::from_cols_array_2d(&self.view_projection) * to_world;
+        (view_projection.to_cols_array_2d(), self.eye.map(|x| x * mm_per_unit))
+    }
 }
 
 /// A camera in words.
@@ -55,8 +64,7 @@ mod tests {
             near: 0.1,
             far: 100.0,
         });
-        let ndc =
-            glam::Mat4::from_cols_array_2d(&camera.view_projection).project_point3(Vec3::new(10.0, 5.0, 0.0));
+        let ndc = Mat4::from_cols_array_2d(&camera.view_projection).project_point3(Vec3::new(10.0, 5.0, 0.0));
         assert!((ndc.x - 1.0).abs() < 1e-5 && (ndc.y - 1.0).abs() < 1e-5, "{ndc}");
     }
 }

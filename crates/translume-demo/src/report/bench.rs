@@ -96,12 +96,7 @@ impl<'a> Bench<'a> {
         self.body.prepare(device, queue, &frame)?;
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         self.body.encode_through(&mut encoder, Stage::Gather);
-        let commands = encoder.finish();
-        let start = Instant::now();
-        queue.submit([commands]);
-        let waited = device.poll(wgpu::PollType::wait_indefinitely());
-        waited.map_err(|error| translume::Error::ReadBack(error.to_string()))?;
-        Ok(1e3 * start.elapsed().as_secs_f64())
+        self.gpu.time(encoder.finish())
     }
 
     /// Irradiance of every texel in the last frame.

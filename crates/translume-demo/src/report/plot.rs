@@ -1,9 +1,8 @@
 //! Error against time.
 
-use super::axis::{COLOURS, decades, range, rounded};
+use super::axis::{Area, COLOURS, Drawn, chart, legend};
 use super::table::Row;
 use super::trials::Sweep;
-use plotters::coord::Shift;
 use plotters::prelude::*;
 
 const PANEL: [u32; 2] = [560, 400];
@@ -13,7 +12,6 @@ const SWEEPS: [(Sweep, &str); 3] = [
     (Sweep::Samples, "points or directions"),
 ];
 
-type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 /// One light with ever finer settings: ms and relative error.
 type Line<'a> = (&'a str, Vec<(f64, f64)>);
 
@@ -52,30 +50,9 @@ fn lines<'a>(rows: &'a [Row], scene: &str, sweep: Sweep) -> Vec<Line<'a>> {
     lines
 }
 
-fn draw(
-    panel: &Area<'_>,
-    title: &str,
-    lines: &[Line<'_>],
-) -> Result<(), DrawingAreaErrorKind<std::io::Error>> {
-    let points = || lines.iter().flat_map(|(_, points)| points);
-    let mut chart = ChartBuilder::on(panel)
-        .caption(title, ("sans-serif", 18))
-        .margin(10)
-        .x_label_area_size(40)
-        .y_label_area_size(64)
-        .build_cartesian_2d(
-            decades(range(points().map(|point| point.0))).log_scale(),
-            decades(range(points().map(|point| point.1))).log_scale(),
-        )?;
-    chart
-        .configure_mesh()
-        .max_light_lines(0)
-        .x_labels(6)
-        .x_desc("ms")
-        .y_desc("RMS error / mean irradiance, %")
-        .x_label_formatter(&|ms| format!("{}", rounded(*ms)))
-        .y_label_formatter(&|error| format!("{}", rounded(100.0 * error)))
-        .draw()?;
+fn draw(panel: &Area<'_>, title: &str, lines: &[Line<'_>]) -> Drawn {
+    let points: Vec<_> = lines.iter().flat_map(|(_, points)| points).copied().collect();
+    let mut chart = chart(panel, title, "irradiance", &points)?;
     for (k, (light, points)) in lines.iter().enumerate() {
         let colour = COLOURS[k % COLOURS.len()].filled();
         let series = LineSeries::new(points.iter().copied(), colour.stroke_width(2)).point_size(3);
@@ -84,12 +61,5 @@ fn draw(
             .label(*light)
             .legend(move |(x, y)| PathElement::new([(x, y), (x + 16, y)], colour.stroke_width(2)));
     }
-    // Error falls as time grows.
-    let corner = SeriesLabelPosition::LowerLeft;
-    chart
-        .configure_series_labels()
-        .position(corner)
-        .background_style(WHITE.mix(0.8))
-        .border_style(BLACK)
-        .draw()
+    legend(&mut chart)
 }

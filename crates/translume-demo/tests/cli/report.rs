@@ -1,6 +1,7 @@
 //! `translume report`: what it writes can be read, and says that the library is right.
 
 use crate::desk::{Desk, check_refusal, translume};
+use std::path::Path;
 
 const HEADER: &str = "scene,light,shadow,atlas,rel_rmse,bias,time_ms,adapter";
 
@@ -61,23 +62,20 @@ fn check_line(line: &str) -> Option<String> {
         .then(|| light.clone())
 }
 
+/// A suite as quick as it gets, on a ball with an atlas of 64².
+pub fn run_suite(suite: &str, folder: &Path) {
+    let folder = folder.to_str().unwrap();
+    let output = translume(&[
+        "report", "--suite", suite, "--quick", "--models", "sphere", "--atlas", "64", "-o", folder,
+    ]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+}
+
 #[test]
 fn gather_agrees_with_rays_on_a_sphere() {
     let desk = Desk::new();
     let folder = desk.path("new/report");
-    let output = translume(&[
-        "report",
-        "--suite",
-        "gather",
-        "--quick",
-        "--models",
-        "sphere",
-        "--atlas",
-        "64",
-        "-o",
-        folder.to_str().unwrap(),
-    ]);
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    run_suite("gather", &folder);
     let read = |name: &str| std::fs::read_to_string(folder.join(name)).unwrap();
     let csv = read("gather.csv");
     let lights = check(&csv).unwrap();

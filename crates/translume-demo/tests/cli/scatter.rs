@@ -1,7 +1,7 @@
 //! `translume report --suite scatter`: what it writes can be read, and says that the default method is right and the pattern is not.
 
-use crate::desk::{Desk, translume};
-use crate::report::fields;
+use crate::desk::Desk;
+use crate::report::{fields, run_suite};
 
 const HEADER: &str =
     "scene,atlas,medium,profile,method,tolerance,pairs_per_texel,rel_rmse,bias,p99,time_ms,overflow,adapter";
@@ -69,19 +69,7 @@ fn check_line(line: &str) -> Option<[String; 2]> {
 fn scatter_agrees_with_all_pairs_and_the_pattern_does_not() {
     let desk = Desk::new();
     let folder = desk.path("report");
-    let output = translume(&[
-        "report",
-        "--suite",
-        "scatter",
-        "--quick",
-        "--models",
-        "sphere",
-        "--atlas",
-        "64",
-        "-o",
-        folder.to_str().unwrap(),
-    ]);
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    run_suite("scatter", &folder);
     let read = |name: &str| std::fs::read_to_string(folder.join(name)).unwrap();
     let csv = read("scatter.csv");
     let found = check(&csv).unwrap();

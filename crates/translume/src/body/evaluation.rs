@@ -2,11 +2,12 @@
 
 use super::Body;
 use crate::Frame;
+use crate::bounds::Bounds;
 use crate::evaluate::{Candidates, Evaluate, View};
 use crate::layout::NeedLayout;
 use crate::stages::scatter::points::PointMemory;
 use crate::stages::{Stage, StageSet};
-use glam::{Mat4, Vec3};
+use glam::Vec3;
 
 /// As in `cluster.wgsl`.
 const IN_VIEW: u32 = 1;
@@ -59,18 +60,11 @@ impl Body {
         let Some(View { camera, .. }) = view.filter(|_| self.dual_theta().is_some()) else {
             return NeedLayout { kind: points, ..NeedLayout::default() };
         };
-        let eye = Vec3::from(camera.eye) * self.mm_per_unit;
+        let (view_projection, eye) = camera.in_mm(self.mm_per_unit);
         // From inside of it a closed body is seen from behind.
-        let (low, high) =
-            corners.iter().fold((corners[0], corners[0]), |(low, high), c| (low.min(*c), high.max(*c)));
-        let is_outside = eye.cmplt(low).any() || eye.cmpgt(high).any();
-        let to_world = Mat4::from_scale(Vec3::splat(1.0 / self.mm_per_unit));
-        NeedLayout {
-            view_projection: (Mat4::from_cols_array_2d(&camera.view_projection) * to_world)
-                .to_cols_array_2d(),
-            eye: eye.to_array(),
-            kind: points | IN_VIEW | if self.shape.closed && is_outside { FACING } else { 0 },
-        }
+        let is_outside = !Bounds::around(corners.iter().copied()).contains(eye.into());
+        let facing = if self.shape.closed && is_outside { FACING } else { 0 };
+        NeedLayout { view_projection, eye, kind: points | IN_VIEW | facing }
     }
 
     /// What a picture of the frame needs of exitance at points.

@@ -7,7 +7,6 @@ use crate::gpu::{self, DEPTH_MAPS, FLOAT_TEXTURE, MediumKind, UNIFORM};
 use crate::layout::{AtlasVertexLayout, CompositeLayout};
 use crate::stages::scatter::points::{PointMemory, Points};
 use crate::{Body, Camera};
-use glam::{Mat4, Vec3};
 use std::sync::OnceLock;
 use wgpu::ShaderStages;
 
@@ -193,11 +192,10 @@ impl CompositeView {
             Some(PointMemory::Vertices { .. }) => VERTICES,
             Some(PointMemory::Fragments { .. }) => FRAGMENTS + body.kind.index(),
         };
-        let to_world = Mat4::from_scale(Vec3::splat(1.0 / body.mm_per_unit));
+        let (view_projection, eye) = camera.in_mm(body.mm_per_unit);
         let uniform = CompositeLayout {
-            view_projection: (Mat4::from_cols_array_2d(&camera.view_projection) * to_world)
-                .to_cols_array_2d(),
-            eye: camera.eye.map(|x| x * body.mm_per_unit),
+            view_projection,
+            eye,
             eta: body.medium().ior,
             exit_scale: body.exit_scale,
             roughness: match gloss {

@@ -108,15 +108,9 @@ impl<'a> Bench<'a> {
 
     /// From submission to its end, ms.
     fn encode_through(&mut self, last: Stage) -> Result<f64, Error> {
-        let Gpu { device, queue, .. } = self.gpu;
-        let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        let mut encoder = self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         self.body.encode_through(&mut encoder, last);
-        let commands = encoder.finish();
-        let start = Instant::now();
-        queue.submit([commands]);
-        let waited = device.poll(wgpu::PollType::wait_indefinitely());
-        waited.map_err(|error| translume::Error::ReadBack(error.to_string()))?;
-        Ok(1e3 * start.elapsed().as_secs_f64())
+        self.gpu.time(encoder.finish())
     }
 
     fn read(&self, buffer: &wgpu::Buffer) -> Result<Vec<[f32; 4]>, Error> {

@@ -1,15 +1,11 @@
 //! Error against time.
 
 use super::row::{Part, Row};
-use crate::report::axis::{COLOURS, decades, range, rounded};
-use plotters::coord::Shift;
+use crate::report::axis::{Area, COLOURS, Drawn, chart, legend};
 use plotters::prelude::*;
 use translume::Method;
 
 const PANEL: (u32, u32) = (560, 400);
-
-type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
-type Drawn = Result<(), DrawingAreaErrorKind<std::io::Error>>;
 
 /// Methods of one kind, drawn alike.
 const FAMILIES: [&str; 3] = ["dual", "tree", "pattern"];
@@ -52,25 +48,8 @@ fn point(row: &Row) -> Option<(f64, f64)> {
 }
 
 fn draw(panel: &Area<'_>, title: &str, rows: &[&Row]) -> Drawn {
-    let points = || rows.iter().filter_map(|row| point(row));
-    let mut chart = ChartBuilder::on(panel)
-        .caption(title, ("sans-serif", 18))
-        .margin(10)
-        .x_label_area_size(40)
-        .y_label_area_size(64)
-        .build_cartesian_2d(
-            decades(range(points().map(|point| point.0))).log_scale(),
-            decades(range(points().map(|point| point.1))).log_scale(),
-        )?;
-    chart
-        .configure_mesh()
-        .max_light_lines(0)
-        .x_labels(6)
-        .x_desc("ms")
-        .y_desc("RMS error / mean exitance, %")
-        .x_label_formatter(&|ms| format!("{}", rounded(*ms)))
-        .y_label_formatter(&|error| format!("{}", rounded(100.0 * error)))
-        .draw()?;
+    let points: Vec<_> = rows.iter().filter_map(|row| point(row)).collect();
+    let mut chart = chart(panel, title, "exitance", &points)?;
     for (k, name) in FAMILIES.into_iter().enumerate() {
         let colour = COLOURS[k].filled();
         let mut media: Vec<&str> = rows.iter().map(|row| row.medium).collect();
@@ -87,10 +66,5 @@ fn draw(panel: &Area<'_>, title: &str, rows: &[&Row]) -> Drawn {
             }
         }
     }
-    chart
-        .configure_series_labels()
-        .position(SeriesLabelPosition::LowerLeft)
-        .background_style(WHITE.mix(0.8))
-        .border_style(BLACK)
-        .draw()
+    legend(&mut chart)
 }
