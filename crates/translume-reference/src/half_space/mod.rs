@@ -7,10 +7,12 @@
 //! what of it would get there and through (the last-flight or next-event estimator; Spanier, Gelbard 1969, "Monte Carlo Principles
 //! and Neutron Transport Problems").
 
+mod decay;
 mod dice;
 mod tally;
 mod walk;
 
+pub use decay::decay_rate;
 pub use tally::{Estimate, Face, Light, Rings};
 
 use rayon::prelude::*;
