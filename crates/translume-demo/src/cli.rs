@@ -16,6 +16,8 @@ Examples:
   translume render creature --frames 9 --timings -o morph.png          and how long each stage took
   translume inspect bunny.obj --json
   translume inspect creature teapot bunny.obj --table                  a line for each
+  translume profile --medium marble -o marble.json                     random walks, as exact as you have patience
+  translume render creature --medium marble --profile marble.json -o creature.png
   translume report --suite gather -o report                            error beside time of every kind of light
   translume report --suite scatter -o report                           and of every method
 
@@ -40,6 +42,9 @@ pub enum Command {
     /// Tell what a model holds and how it unwraps.
     #[command(after_help = EXAMPLES)]
     Inspect(Inspect),
+    /// Walk light through a flat half-space of a medium and write what returns, as a table for `render --profile`.
+    #[command(after_help = EXAMPLES)]
+    Profile(Profile),
     /// Measure speed and error against the CPU reference; writes tables and a plot.
     #[command(after_help = EXAMPLES)]
     Report(Report),
@@ -69,8 +74,9 @@ pub struct Render {
     /// Even out charts until every texel holds about the same area of the surface.
     #[arg(long)]
     pub even: bool,
-    /// Diffuse profile: dipole (the paper's formula to the letter), dipole-normalised, dipole-oriented (its sources below and above the surface), better-dipole, photon-beam, normalised-diffusion,
-    /// normalised-diffusion-searchlight; a dipole, the better one or photon-beam with -single adds light scattered once.
+    /// Diffuse profile: half-space (random walks, tabulated), half-space-diffuse (light enters from all sides), dipole (the paper's formula to the letter), dipole-normalised, dipole-oriented (its sources below and above the surface), better-dipole, photon-beam, normalised-diffusion,
+    /// normalised-diffusion-searchlight; a dipole, the better one or photon-beam with -single adds light scattered once; or
+    /// a table that `translume profile` wrote, by the name of its .json.
     #[arg(long, value_name = "NAME", default_value = "dipole-normalised")]
     pub profile: String,
     /// How the scatter sum is evaluated: dual (groups of texels at both ends), tree (each texel by itself), all-pairs (exact and slow), or
@@ -161,6 +167,13 @@ fn degrees(text: &str) -> Result<[f32; 2], String> {
     }
 }
 
+/// Three numbers with commas between.
+fn colour(text: &str) -> Result<[f32; 3], String> {
+    let numbers = text.split(',').map(|part| part.trim().parse().ok()).collect::<Option<Vec<f32>>>();
+    let three = numbers.and_then(|numbers| numbers.try_into().ok());
+    three.ok_or_else(|| "give three numbers with commas between, as 0.7,1.2,1.9".to_owned())
+}
+
 /// `translume inspect`.
 #[derive(Debug, Args)]
 pub struct Inspect {
@@ -176,6 +189,32 @@ pub struct Inspect {
     /// How the surface is laid out.
     #[command(flatten)]
     pub layout: Layout,
+}
+
+/// `translume profile`.
+#[derive(Debug, Args)]
+pub struct Profile {
+    /// Medium by name, as jade, wax, skimmilk, marble, skin1; a wrong name lists them all.
+    #[arg(long, value_name = "NAME")]
+    pub medium: Option<String>,
+    /// Reduced scattering coefficients in 1/mm, in place of those of the medium.
+    #[arg(long, value_name = "R,G,B", value_parser = colour)]
+    pub scattering: Option<[f32; 3]>,
+    /// Absorption coefficients in 1/mm, in place of those of the medium.
+    #[arg(long, value_name = "R,G,B", value_parser = colour)]
+    pub absorption: Option<[f32; 3]>,
+    /// Index of refraction, in place of that of the medium.
+    #[arg(long, value_name = "X")]
+    pub ior: Option<f32>,
+    /// How light enters: normal, or diffuse as under a uniform sky.
+    #[arg(long, value_name = "WAY", default_value = "normal", value_parser = ["normal", "diffuse"])]
+    pub entry: String,
+    /// Random walks for each channel.
+    #[arg(long, value_name = "N", default_value_t = 1_000_000, value_parser = clap::value_parser!(u64).range(1000..))]
+    pub photons: u64,
+    /// Table to write, .json; or a folder, in which it gets a name of its own and is left as it is if it is there already.
+    #[arg(short, long, value_name = "FILE|DIR")]
+    pub output: PathBuf,
 }
 
 /// `translume report`.
