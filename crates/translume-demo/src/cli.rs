@@ -74,10 +74,10 @@ pub struct Render {
     /// Even out charts until every texel holds about the same area of the surface.
     #[arg(long)]
     pub even: bool,
-    /// Diffuse profile: half-space (random walks, tabulated), half-space-diffuse (light enters from all sides), dipole (the paper's formula to the letter), dipole-normalised, dipole-oriented (its sources below and above the surface), better-dipole, photon-beam, normalised-diffusion,
+    /// Diffuse profile: half-space (random walks, tabulated), half-space-searchlight (where all light enters along the normal), dipole (the paper's formula to the letter), dipole-normalised, dipole-oriented (its sources below and above the surface), better-dipole, photon-beam, normalised-diffusion,
     /// normalised-diffusion-searchlight; a dipole, the better one or photon-beam with -single adds light scattered once; or
     /// a table that `translume profile` wrote, by the name of its .json.
-    #[arg(long, value_name = "NAME", default_value = "dipole-normalised")]
+    #[arg(long, value_name = "NAME", default_value = "half-space")]
     pub profile: String,
     /// How the scatter sum is evaluated: dual (groups of texels at both ends), tree (each texel by itself), all-pairs (exact and slow), or
     /// pattern (57 samples around a texel of the atlas, tens of percent off: for comparison).
@@ -207,7 +207,7 @@ pub struct Profile {
     #[arg(long, value_name = "X")]
     pub ior: Option<f32>,
     /// How light enters: normal, or diffuse as under a uniform sky.
-    #[arg(long, value_name = "WAY", default_value = "normal", value_parser = ["normal", "diffuse"])]
+    #[arg(long, value_name = "WAY", default_value = "diffuse", value_parser = ["normal", "diffuse"])]
     pub entry: String,
     /// Random walks for each channel.
     #[arg(long, value_name = "N", default_value_t = 1_000_000, value_parser = clap::value_parser!(u64).range(1000..))]

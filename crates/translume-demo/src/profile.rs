@@ -34,9 +34,8 @@ pub fn open(name: &str) -> Result<Profile, Error> {
     }
     let fail = |problem: String| Error::Table { path: path.to_owned(), problem };
     let text = std::fs::read_to_string(path).map_err(|error| fail(format!("cannot be read: {error}")))?;
-    let file: TableFile = serde_json::from_str(&text).map_err(|error| {
-        fail(format!("is not a table: {error}; `translume profile` writes one"))
-    })?;
+    let file: TableFile = serde_json::from_str(&text)
+        .map_err(|error| fail(format!("is not a table: {error}; `translume profile` writes one")))?;
     let profile =
         Profile::Tabulated(Table { radii: file.radii_mm.into(), values: file.reflectance_per_mm2.into() });
     profile.validate().map_err(|error| fail(error.to_string()))?;
@@ -110,7 +109,8 @@ fn medium(arguments: &cli::Profile) -> Result<Medium, Error> {
 /// All channels at the same radii, for as far as the widest goes.
 fn table(channels: &[Channel; 3], profiles: &[Numeric]) -> TableFile {
     let first = channels.iter().map(|c| FIRST / c.sigma_t()).fold(f64::MAX, f64::min);
-    let end = |(channel, profile): (&Channel, &Numeric)| (LAST / channel.sigma_t()).min(DECAYS / profile.decay());
+    let end =
+        |(channel, profile): (&Channel, &Numeric)| (LAST / channel.sigma_t()).min(DECAYS / profile.decay());
     let last = channels.iter().zip(profiles).map(end).fold(0.0, f64::max);
     let count = (PER_OCTAVE * (last / first).log2()).ceil() as usize;
     let radii = (0..=count).map(|k| first * (k as f64 / PER_OCTAVE).exp2());

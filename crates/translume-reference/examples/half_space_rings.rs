@@ -27,10 +27,16 @@ fn main() -> Result<(), Box<dyn Error>> {
             for (k, root) in ROOTS.iter().enumerate() {
                 let (face, absorbed) = (&light.reflected[k], light.absorbed[k]);
                 for (ring, multiple) in face.multiple.rings.iter().enumerate() {
-                    let (outer, single) = (light.edges.get(ring).unwrap_or(&f64::INFINITY), face.single.rings[ring]);
+                    let (outer, single) =
+                        (light.edges.get(ring).unwrap_or(&f64::INFINITY), face.single.rings[ring]);
                     println!(
                         "{entry:?},{ior},{root},{ring},{outer:.6},{:e},{:e},{:e},{:.6},{:.6},{:.6}",
-                        single.value, multiple.value, multiple.error, face.all.total.value, absorbed.value, absorbed.error
+                        single.value,
+                        multiple.value,
+                        multiple.error,
+                        face.all.total.value,
+                        absorbed.value,
+                        absorbed.error
                     );
                 }
             }

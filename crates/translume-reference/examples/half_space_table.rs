@@ -11,8 +11,8 @@ use std::error::Error;
 use translume_reference::half_space::decay_rate;
 use translume_reference::profile::{Entry, half_space_albedo};
 
-/// Rings noisier than this are given up: from there on the ratio to the source keeps its last value.
-const NOISIEST: f64 = 0.04;
+/// Rings noisier than this are given up, nearer and farther than the surest one: there the ratio to the source keeps its last value.
+const NOISIEST: [f64; 2] = [0.15, 0.04];
 
 struct Ring {
     outer: f64,
@@ -112,9 +112,11 @@ fn multiple(run: &Run) -> Vec<f64> {
 
 /// A parabola through the neighbours of each ring, near ones and sure ones first. Values with their errors.
 fn smooth(points: &[(f64, f64)]) -> Vec<f64> {
-    let usable = |point: &(f64, f64)| point.0.is_finite() && point.1 < NOISIEST;
-    let start = points.iter().position(usable).unwrap_or(0);
-    let end = start + points[start..].iter().position(|p| !usable(p)).unwrap_or(points.len() - start);
+    // Up to five mean free paths: what little is left far away may have too few digits to have an error.
+    let surest = (0..24).min_by(|&a, &b| points[a].1.total_cmp(&points[b].1)).unwrap_or(0);
+    let usable = |k: usize, noisiest: f64| points[k].0.is_finite() && points[k].1 < noisiest;
+    let start = (0..surest).rev().find(|&k| !usable(k, NOISIEST[0])).map_or(0, |k| k + 1);
+    let end = (surest..points.len()).find(|&k| !usable(k, NOISIEST[1])).unwrap_or(points.len());
     let fit = |at: usize| {
         let mut sums = [0.0; 5];
         let mut right = [0.0; 3];

@@ -29,7 +29,10 @@ fn half_spaces_return_chandrasekhars_albedo() {
             assert!(off < 4.0, "{entry:?} {albedo}: {total:?}, {off} σ");
             assert!(total.error < 0.01 * total.value, "{entry:?} {albedo}: {total:?}");
             let other = half_space_albedo(albedo - 0.05 * (1.0 - albedo) - 0.005, exact);
-            assert!(sigmas(total, other) > 4.0, "{entry:?} {albedo}: a little more absorption must be noticed");
+            assert!(
+                sigmas(total, other) > 4.0,
+                "{entry:?} {albedo}: a little more absorption must be noticed"
+            );
         }
         assert_eq!(light.reflected[3].all.total.value, 0.0);
     }
@@ -38,12 +41,17 @@ fn half_spaces_return_chandrasekhars_albedo() {
 /// Everything that entered is somewhere, though each part is counted on its own.
 fn balance(light: &Light, k: usize) -> f64 {
     let face = |face: &translume_reference::half_space::Face| face.all.total.value + face.unscattered.value;
-    face(&light.reflected[k]) + face(&light.transmitted[k]) + light.absorbed[k].value + light.unfinished[k].value
+    face(&light.reflected[k])
+        + face(&light.transmitted[k])
+        + light.absorbed[k].value
+        + light.unfinished[k].value
 }
 
 #[test]
 fn light_is_reflected_transmitted_or_absorbed() {
-    for (ior, thickness, anisotropy) in [(1.0, 2.0, 0.0), (1.5, 0.3, 0.7), (1.3, f64::INFINITY, -0.4), (0.8, 5.0, 0.0)] {
+    for (ior, thickness, anisotropy) in
+        [(1.0, 2.0, 0.0), (1.5, 0.3, 0.7), (1.3, f64::INFINITY, -0.4), (0.8, 5.0, 0.0)]
+    {
         for entry in [Entry::Normal, Entry::Diffuse] {
             let light = Setup { entry, ior, thickness, anisotropy, ..setup() }.finish();
             for k in 0..ALBEDOS.len() {
@@ -104,7 +112,9 @@ fn similarity() {
 fn errors_are_honest() {
     let exact = half_space_albedo(0.9, From::Normal);
     let runs: Vec<f64> = (0..30)
-        .map(|seed| Setup { albedos: vec![0.9], photons: 3000, seed, ..setup() }.finish().reflected[0].all.total)
+        .map(|seed| {
+            Setup { albedos: vec![0.9], photons: 3000, seed, ..setup() }.finish().reflected[0].all.total
+        })
         .map(|total| (total.value - exact) / total.error)
         .collect();
     let spread = (runs.iter().map(|x| x * x).sum::<f64>() / 30.0).sqrt();
@@ -143,7 +153,8 @@ fn published_walks_agree() {
         let entry = if total[2] == 0.0 { Entry::Normal } else { Entry::Cosine };
         let rings: Vec<_> = profiles.iter().filter(|row| row[..3] == total[..3]).collect();
         let edges = rings.iter().map(|row| row[4]).collect();
-        let setup = Setup { entry, ior: total[0], albedos: vec![total[1]], edges, photons: 60_000, ..setup() };
+        let setup =
+            Setup { entry, ior: total[0], albedos: vec![total[1]], edges, photons: 60_000, ..setup() };
         let face = &setup.finish().reflected[0];
         // Our noise, four standard errors, and theirs: 0.3 %.
         let allowed = |e: Estimate| 4.0 * e.error + 3e-3 * e.value;

@@ -96,7 +96,8 @@ impl Walk<'_> {
         loop {
             let down = self.direction[2];
             let below = down > 0.0;
-            let way = if below { (self.setup.thickness - self.place[2]) / down } else { self.place[2] / -down };
+            let way =
+                if below { (self.setup.thickness - self.place[2]) / down } else { self.place[2] / -down };
             if !way.is_finite() {
                 self.advance(left);
                 return true;

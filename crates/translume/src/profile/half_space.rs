@@ -14,9 +14,9 @@ use std::sync::LazyLock;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Entry {
     /// Along the normal.
-    #[default]
     Normal,
     /// As the same radiance from all sides enters: as under a sky, or as a lamp on the average of a convex body's surface.
+    #[default]
     Diffuse,
 }
 
@@ -168,7 +168,8 @@ impl Slice {
         let [before, from, to, after] = [k.saturating_sub(1), k, k + 1, (k + 2).min(last)].map(|k| values[k]);
         // Catmull and Rom's.
         let (slope, next, rise) = (0.5 * (to - before), 0.5 * (after - from), to - from);
-        let value = from + t * (slope + t * (3.0 * rise - 2.0 * slope - next + t * (slope + next - 2.0 * rise)));
+        let value =
+            from + t * (slope + t * (3.0 * rise - 2.0 * slope - next + t * (slope + next - 2.0 * rise)));
         (value, (inside - place).max(0.0) * STEP)
     }
 

@@ -44,7 +44,7 @@ pub(crate) fn smooth_length(channels: &Channels) -> f32 {
 ///
 /// All are for a flat half-space lit at one point. All but [`Dipole`](Self::Dipole) divide F_t by its hemispherical mean 1 − F_dr,ext on
 /// the way to the eye, so that what B says leaves does leave. Figures of accuracy, and which to take when: docs/method.md.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Profile {
     /// A flat half-space with *all* orders of scattering, tabulated from random walks over r, α' and η (0.6 to 2.5; as there beyond). Light
@@ -56,7 +56,6 @@ pub enum Profile {
     Dipole,
     /// The same dipole (Jensen et al. 2001, eq. 4) with F_t normalised. Right some mean free paths away in media that absorb little; too
     /// bright where they absorb much, too dark near the point of entry. The cheapest to set up.
-    #[default]
     DipoleNormalised,
     /// D'Eon 2012, "A Better Dipole": Grosjean's diffusion coefficient, the true Fresnel equations at the boundary (right for η < 1 too),
     /// fluence and flux mixed in the exitance. Right for absorbing media where the classical dipole is not; still one source at one
@@ -100,11 +99,19 @@ pub enum Diffusion {
     PhotonBeam,
 }
 
+impl Default for Profile {
+    /// The half-space that light enters from all sides: a lamp meets a body at all angles too.
+    fn default() -> Self {
+        Self::HalfSpace(Entry::Diffuse)
+    }
+}
+
 impl Profile {
-    /// Every profile without parameters, with its name. Normalised diffusion is that of diffuse entry unless the name says otherwise.
+    /// Every profile without parameters, with its name. Half-space and normalised diffusion are those of diffuse entry unless the name says
+    /// otherwise.
     pub const NAMES: &[(&'static str, Self)] = &[
-        ("half-space", Self::HalfSpace(Entry::Normal)),
-        ("half-space-diffuse", Self::HalfSpace(Entry::Diffuse)),
+        ("half-space", Self::HalfSpace(Entry::Diffuse)),
+        ("half-space-searchlight", Self::HalfSpace(Entry::Normal)),
         ("dipole", Self::Dipole),
         ("dipole-normalised", Self::DipoleNormalised),
         ("dipole-oriented", Self::DipoleOriented),
