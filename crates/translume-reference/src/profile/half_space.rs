@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use super::Numeric;
 use super::beam::single;
 use super::{Channel, Entry};
-use crate::half_space::{Entry as Way, Light, Setup, decay_rate};
+use crate::half_space::{Entry as Way, Light, Rings, Setup, decay_rate};
 
 /// Rings noisier than this are left to the exponential.
 const NOISIEST: f64 = 0.1;
@@ -23,34 +23,39 @@ pub fn walks(channel: &Channel, entry: Entry, photons: u64) -> Setup {
 pub fn half_space(channel: &Channel, entry: Entry, light: &Light) -> Numeric {
     let sigma_t = channel.sigma_t();
     let rate = decay_rate(channel.albedo());
-    let knots = knots(light, rate, entry);
+    let face = &light.reflected[0];
+    let beam = |r: f64| TAU * (-r).exp();
+    let source = |r: f64| (-rate * r.hypot(1.0)).exp() / r.hypot(1.0);
+    let once = knots(light, &face.single, beam);
+    let often = knots(light, &face.multiple, source);
     let reflectance = |r: f64| {
-        let walked = follow(&knots, r * sigma_t) * falloff(r * sigma_t, rate) * sigma_t * sigma_t;
-        walked + if entry == Entry::Normal { single(channel, r) } else { 0.0 }
+        let x = r * sigma_t;
+        let once = match entry {
+            Entry::Normal => single(channel, r),
+            Entry::Diffuse => follow(&once, x) * (-x).exp() / x * sigma_t * sigma_t,
+        };
+        once + follow(&often, x) * falloff(x, rate) * sigma_t * sigma_t
     };
     Numeric::new(reflectance, rate * sigma_t, 0.0, [1e-4, 1e4].map(|x| x / sigma_t))
 }
 
-/// What profiles of this kind look like from far: a source a mean free path deep in a half-space.
+/// What light scattered often looks like from far: a source a mean free path deep in a half-space.
 fn falloff(r: f64, rate: f64) -> f64 {
     let d = r.hypot(1.0);
     (1.0 + rate * d) * (-rate * d).exp() / (TAU * d.powi(3))
 }
 
-/// ln r and ln of the ratio to `falloff` in the middle of each ring: of what the closed form does not know.
-fn knots(light: &Light, rate: f64, entry: Entry) -> Vec<[f64; 2]> {
-    let face = &light.reflected[0];
-    let walks = if entry == Entry::Normal { &face.multiple } else { &face.all };
+/// ln r in the middle of each ring, and ln of what left there over what `beyond` has in it: the integral of a simple shape from r on.
+fn knots(light: &Light, walked: &Rings, beyond: impl Fn(f64) -> f64) -> Vec<[f64; 2]> {
     let mut knots = Vec::new();
     for (ring, outer) in light.edges.iter().enumerate().skip(1) {
-        let walked = walks.rings[ring];
-        let middle = (light.edges[ring - 1] * outer).sqrt();
+        let (inner, walked) = (light.edges[ring - 1], walked.rings[ring]);
+        let middle = (inner * outer).sqrt();
         if walked.error > NOISIEST * walked.value && middle > 1.0 {
             break;
         }
         if walked.value > 0.0 {
-            let ratio = walked.value / light.area(ring) / falloff(middle, rate);
-            knots.push([middle.ln(), ratio.ln()]);
+            knots.push([middle.ln(), (walked.value / (beyond(inner) - beyond(*outer))).ln()]);
         }
     }
     knots
