@@ -188,8 +188,8 @@ pub fn profiles(profile: &Profile, medium: &Medium) -> [Numeric; 3] {
     std::array::from_fn(|channel| numeric(profile, medium, channel))
 }
 
-/// For each channel: their totals are then known to some 0.2 %.
-const WALKS: u64 = 200_000;
+/// For each channel: their totals are then known to some 0.3 %.
+const WALKS: u64 = 100_000;
 
 fn channel(medium: &Medium, index: usize) -> Channel {
     let [sigma_s_prime, sigma_a] = [medium.sigma_s_prime[index], medium.sigma_a[index]].map(f64::from);

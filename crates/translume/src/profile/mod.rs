@@ -49,7 +49,8 @@ pub(crate) fn smooth_length(channels: &Channels) -> f32 {
 pub enum Profile {
     /// A flat half-space with *all* orders of scattering, tabulated from random walks over r, α' and η (0.6 to 2.5; as there beyond). Light
     /// enters along the normal or from all sides. Within 2 % of the walks wherever they are, near the entry too, and as bright as they
-    /// to 0.5 %: what is left is that no body is flat. Scattering is isotropic with σ_s'.
+    /// to 0.5 %: what is left is that no body is flat. Through thin parts lit from behind it is darker than a dipole, and reality brighter than
+    /// both. Scattering is isotropic with σ_s'.
     HalfSpace(Entry),
     /// The classical dipole with L_o = F_t·B/π, to the letter of Gong et al. 2008 (eqs. 3–7). It loses 6 % at η = 1.3 and 9 % at
     /// η = 1.5 even on a plane under a uniform sky, because F_t is not normalised over the hemisphere.
@@ -70,7 +71,7 @@ pub enum Profile {
     /// the phase function.
     WithSingleScattering(Diffusion),
     /// Christensen, Burley 2015, "Approximate Reflectance Profiles for Efficient Subsurface Scattering": fitted to random walks with
-    /// *all* orders of scattering at η = 1. The closest to reality of those without parameters where the surface reflects little
+    /// *all* orders of scattering at η = 1. Of the closed forms the closest to reality where the surface reflects little
     /// inside; the index of refraction does not change it, which makes it too bright at η of 1.3 and more. A of the surface
     /// comes from α' by Chandrasekhar's exact half-space, along the normal or from all sides as the fit says.
     NormalisedDiffusion(BurleyFit),
