@@ -79,12 +79,12 @@ fn published(entry: u32) -> Vec<Walks> {
 const HALF_SPACES: [(Profile, Way); 2] =
     [(Profile::HalfSpace(Entry::Normal), Way::Normal), (Profile::HalfSpace(Entry::Diffuse), Way::Diffuse)];
 
-/// At nodes of the table, and at 0.85, 1.25 and 1.6 between them. 4 % and 1.5 %: the noise of 100,000 walks, most where
+/// At indices between nodes of the table. 4 % and 1.5 %: the noise of 100,000 walks, most where
 /// α' is small. Measured 2.8 and 0.9 %.
 #[test]
 fn half_spaces_follow_our_walks() {
     for (profile, way) in HALF_SPACES {
-        for ior in [0.85, 1.0, 1.25, 1.6] {
+        for ior in [0.85, 1.25, 1.6] {
             for walks in walks(way, ior, 100_000) {
                 let [shape, total] = walks.errors(&profile);
                 assert!(
