@@ -122,6 +122,7 @@ pub struct Pass<'a> {
     /// `None` for depth alone.
     pub fragment: Option<&'a str>,
     pub targets: &'a [TextureFormat],
+    pub writes: wgpu::ColorWrites,
     pub depth: Option<wgpu::CompareFunction>,
     pub constants: &'a [(&'a str, f64)],
 }
@@ -146,7 +147,8 @@ impl Pass<'_> {
         ];
         let compilation_options =
             || wgpu::PipelineCompilationOptions { constants: self.constants, ..Default::default() };
-        let targets: Vec<_> = self.targets.iter().map(|&format| Some(format.into())).collect();
+        let target = |&format| Some(wgpu::ColorTargetState { format, blend: None, write_mask: self.writes });
+        let targets: Vec<_> = self.targets.iter().map(target).collect();
         device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
             label: Some(self.label),
             layout: Some(&layout),

@@ -127,6 +127,7 @@ impl Screen {
             mesh: true,
             fragment: None,
             targets: &[],
+            writes: wgpu::ColorWrites::ALL,
             depth: Some(wgpu::CompareFunction::Less),
             constants: &constants_of_shader,
         };

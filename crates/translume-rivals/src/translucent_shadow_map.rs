@@ -134,10 +134,12 @@ impl Maps {
             mesh: true,
             fragment: Some("store"),
             targets: &MAP,
+            writes: wgpu::ColorWrites::ALL,
             depth: Some(wgpu::CompareFunction::Less),
             constants: &constants_of_shader,
         };
-        let seen = Pass { layout: &picture_layout, vertex: "from_eye", ..mesh };
+        let seen =
+            Pass { layout: &picture_layout, vertex: "from_eye", targets: &[gpu::PICTURE], ..mesh };
         Ok(Self {
             store: mesh.pipeline(device),
             halve: Pass {
@@ -150,11 +152,16 @@ impl Maps {
                 ..mesh
             }
             .pipeline(device),
-            depth_alone: Pass { label: "depth", fragment: None, targets: &[], ..seen }.pipeline(device),
+            depth_alone: Pass {
+                label: "depth",
+                fragment: Some("depth_alone"),
+                writes: wgpu::ColorWrites::empty(),
+                ..seen
+            }
+            .pipeline(device),
             picture: Pass {
                 label: "translucent picture",
                 fragment: Some("picture"),
-                targets: &[gpu::PICTURE],
                 depth: Some(wgpu::CompareFunction::LessEqual),
                 ..seen
             }
