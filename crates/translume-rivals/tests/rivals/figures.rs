@@ -1,15 +1,15 @@
 //! Figures and pictures, for reading.
 
-use crate::scene::{Scene, burley, creature, error, read, scaled};
+use crate::scene::{Scene, burley, error, read, scaled};
 use std::path::Path;
 use std::time::Instant;
 use translume::{DirectionalLight, Light, Medium, PointLight, wgpu};
-use translume_mesh::load;
+use translume_mesh::{builtin, load};
 use translume_rivals::{Renderer, Rival, ScreenSpace, TranslucentShadowMap};
 use translume_tests::{Shot, dipoles, gpu};
 
 fn subjects() -> Vec<(&'static str, translume_mesh::Mesh)> {
-    let mut all = vec![("creature", creature())];
+    let mut all = vec![("creature", scaled(builtin::creature(), 100.0))];
     if let Some(folder) = std::env::var_os("TRANSLUME_MODELS") {
         let path = Path::new(&folder).join("stanford-bunny.obj");
         all.push(("bunny", scaled(load::load(&path).unwrap().mesh, 100.0)));
@@ -72,8 +72,8 @@ fn errors_beside_times() {
     for (name, mesh) in subjects() {
         for (kind, medium) in [("behind", "skimmilk"), ("sun", "skimmilk"), ("behind", "skin1")] {
             let scene = lit(kind, mesh.clone(), Medium::preset(medium).unwrap(), size);
-            let dipole = scene.judge(dipoles(&scene.medium), 8);
-            let normalised = scene.judge(burley(&scene.medium), 8);
+            let dipole = scene.judge(dipoles(&scene.medium), 8, 0.5);
+            let normalised = scene.judge(burley(&scene.medium), 8, 0.5);
             for (rival_name, rival) in rivals() {
                 let (renderer, ms) = time(&scene, rival);
                 let picture = read(&renderer);
@@ -82,7 +82,20 @@ fn errors_beside_times() {
                     "| {name} {kind} {medium} | {rival_name} | {:.3} {:+.3} | {:.3} {:+.3} | {ms:.1} |",
                     a[0], a[1], b[0], b[1]
                 );
-                save(&format!("{name} {kind} {medium} {rival_name}"), &picture, size);
+            }
+        }
+    }
+}
+
+/// Pictures: the same with `OUT=folder`.
+#[test]
+#[ignore = "a minute; for looking at"]
+fn pictures() {
+    for (name, mesh) in subjects() {
+        for kind in ["behind", "both"] {
+            let scene = lit(kind, mesh.clone(), Medium::SKIMMILK, 512);
+            for (rival_name, rival) in rivals() {
+                save(&format!("{name} {kind} {rival_name}"), &scene.picture(rival), scene.shot.size);
             }
         }
     }

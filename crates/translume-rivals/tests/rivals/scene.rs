@@ -1,12 +1,12 @@
 //! A body in front of a camera, for the rivals and for the integral over its surface.
 
-use translume::{Light, Medium, readback};
-use translume_mesh::{Mesh, builtin};
+use translume::{DirectionalLight, Light, Medium, readback};
+use translume_mesh::Mesh;
 use translume_reference::composite::{self, Exit};
 use translume_reference::converged::Converged;
 use translume_reference::profile::{Channel, Entry, Profile, normalised_diffusion};
 use translume_reference::{Hit, Surface};
-use translume_rivals::{Frame, Geometry, Renderer, Rival};
+use translume_rivals::{Frame, Geometry, Renderer, Rival, ScreenSpace, TranslucentShadowMap};
 use translume_tests::{Shot, gpu, light};
 
 /// All lengths are millimetres.
@@ -79,12 +79,13 @@ impl Scene {
             .collect()
     }
 
-    /// The integral's picture by these profiles, at every `stride`th pixel each way; the others are empty.
-    pub fn judge<P: Profile>(&self, profiles: [P; 3], stride: usize) -> Picture {
+    /// The integral's picture by these profiles, at every `stride`th pixel each way; the others are empty. Light is cast onto patches of
+    /// `edge` mm.
+    pub fn judge<P: Profile>(&self, profiles: [P; 3], stride: usize, edge: f64) -> Picture {
         let surface = self.surface();
         let lights: Vec<_> = self.lights.iter().map(|each| light(each, 1.0)).collect();
         let converged =
-            Converged::with_profiles(&surface, &lights, self.medium.ior.into(), profiles, 0.5);
+            Converged::with_profiles(&surface, &lights, self.medium.ior.into(), profiles, edge);
         let size = self.shot.size as usize;
         let picked = |k: &usize| (k % size) % stride == stride / 2 && (k / size) % stride == stride / 2;
         let hits = self.hits(&surface);
@@ -150,6 +151,29 @@ pub fn scaled(mut mesh: Mesh, diagonal: f32) -> Mesh {
     mesh
 }
 
-pub fn creature() -> Mesh {
-    scaled(builtin::creature(), 100.0)
+/// In front of a camera that looks along −z.
+pub fn before_camera(mesh: Mesh, medium: Medium, light: Light, size: u32, fov: f32) -> Scene {
+    let shot = Shot { eye: [0.0, 0.0, 200.0], target: [0.0; 3], fov, size };
+    Scene { mesh, medium, lights: vec![light], shot }
+}
+
+/// Facing a light in this direction.
+pub fn sun(to_light: [f32; 3]) -> DirectionalLight {
+    DirectionalLight { to_light, ..Default::default() }
+}
+
+/// A square of 400 mm in the plane z = 0 that faces the camera.
+pub fn wall() -> Mesh {
+    let mut mesh = translume_tests::plane(400.0, 16).mesh.clone();
+    for v in mesh.positions.iter_mut().chain(&mut mesh.normals) {
+        *v = [v[0], -v[2], v[1]];
+    }
+    mesh
+}
+
+pub fn default_rivals() -> [Rival; 2] {
+    [
+        Rival::TranslucentShadowMap(TranslucentShadowMap::default()),
+        Rival::ScreenSpace(ScreenSpace::default()),
+    ]
 }
