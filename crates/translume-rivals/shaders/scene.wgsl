@@ -58,7 +58,8 @@ fn map_place(ndc: vec2f) -> vec2f {
 }
 
 fn to_light(light: Light, point: vec3f) -> vec3f {
-    return mix(-light.forward, normalize(light.origin - point), light.perspective);
+    if light.perspective == 0.0 { return -light.forward; }
+    return normalize(light.origin - point);
 }
 
 fn enters(light: Light, point: vec3f) -> bool {

@@ -116,7 +116,8 @@ fn way(index: u32, texel: vec2i) -> f32 {
     let light = scene.lights[index];
     let stored = textureLoad(shadow_maps, texel, index, 0);
     let span = light.far - light.near;
-    return mix(light.near + stored * span, light.near * light.far / (light.far - stored * span), light.perspective);
+    if light.perspective == 0.0 { return light.near + stored * span; }
+    return light.near * light.far / (light.far - stored * span);
 }
 
 // The share of the pixel's surface that sees the light: four points of it, each by the four nearest texels, compared with the plane of the triangle.

@@ -8,6 +8,8 @@ override DISPLACED: bool = false;
 
 const TABLE_CELLS: f32 = 127.0;
 const NOTHING: f32 = 1e30;
+// Between the pattern and the map.
+const LEAST_COSINE: f32 = 0.3;
 
 struct Medium {
     // 1/mm.
@@ -109,18 +111,19 @@ fn picture(in: Vertex) -> @location(0) vec4f {
     let to_eye = normalize(scene.eye - in.position);
     let normal = normalize(in.normal);
     var exitance = vec3f(0.0);
-    for (var k = 0u; k < scene.light_count; k++) { exitance += scattered(k, in.position); }
+    for (var k = 0u; k < scene.light_count; k++) { exitance += scattered(k, in.position, normal); }
     return vec4f(exitance * (scene.exit_scale * fresnel_transmittance(scene.eta, abs(dot(normal, to_eye)))), 1.0);
 }
 
 // A receiver as a light sees it.
 struct Receiver {
     position: vec3f,
-    // On the map, 0..1.
-    place: vec2f,
-    // Widths of the map per mm there.
-    per_mm: f32,
-    depth: f32,
+    // The plane of the pattern, and what a unit of it is on the map.
+    right: vec3f,
+    up: vec3f,
+    foreshortening: f32,
+    // Texels of the map per mm.
+    texels: f32,
 }
 
 // What entered around a place of the map.
@@ -133,19 +136,24 @@ struct Entry {
     widening: f32,
 }
 
-// level: of the map, its texels as wide as what is averaged
-fn entry(index: u32, receiver: Receiver, place: vec2f, level: f32) -> Entry {
+// offset: in the plane of the pattern, mm      level: of the map, its texels as wide as what is averaged
+fn entry(index: u32, receiver: Receiver, offset: vec2f, level: f32) -> Entry {
     let light = scene.lights[index];
+    let seen = in_light(light, receiver.position + receiver.right * offset.x + receiver.up * offset.y);
+    let place = map_place(seen.xy / (light.half_width * mix(1.0, seen.z, light.perspective)));
     let found = textureSampleLevel(entering, smooth_sampler, place, index, level);
     let depth = textureSampleLevel(depths, smooth_sampler, place, index, level).x / max(found.a, 1e-20);
     // Nothing enters beside the map, whatever its outermost texels hold.
     let cell = exp2(level) / f32(textureDimensions(entering).x);
     let inside = saturate((0.5 * cell + 0.5 - abs(place - 0.5)) / cell);
     let z = 0.5 * (light.near + light.far + depth * (light.far - light.near));
-    let widening = mix(1.0, z / receiver.depth, light.perspective);
+    // A directional light counts depth from the middle of the body, where it is 0.
+    let widening = select(1.0, z / seen.z, light.perspective > 0.0);
     let lateral = (place - 0.5) * vec2f(2.0, -2.0) * (light.half_width * mix(1.0, z, light.perspective));
     let position = light.origin + light.right * lateral.x + light.up * lateral.y + light.forward * z;
-    return Entry(found.a * inside.x * inside.y, position - receiver.position, found.xyz / max(found.a, 1e-20), widening);
+    // Power on a unit of the plane, as far away as what it fell on: for a point light less with the square of the depth.
+    let weight = found.a * inside.x * inside.y * receiver.foreshortening / mix(1.0, z * z, light.perspective);
+    return Entry(weight, position - receiver.position, found.xyz / max(found.a, 1e-20), widening);
 }
 
 // ∫ R_d 2πρ dρ beyond a distance, up to the factor α'/2: z·e^(−σ_tr d)/d of both sources.
@@ -166,25 +174,38 @@ fn radius_squared(x: f32) -> f32 {
 // Distance of the nearest place of entry, by a look at the middle and four around it: how wide the pattern has to be.
 fn nearest_entry(index: u32, receiver: Receiver) -> f32 {
     let reach = sqrt(radius_squared(0.6931472));
-    let texels = f32(textureDimensions(entering).x) * receiver.per_mm;
-    let level = max(log2(reach * texels), 0.0);
+    let level = max(log2(reach * receiver.texels), 0.0);
     var nearest = NOTHING;
     for (var k = 0; k < 5; k++) {
         let direction = select(vec2f(f32(k & 1) * 2.0 - 1.0, f32(k >> 1u) * 2.0 - 1.0) * 0.70710678, vec2f(0.0), k == 4);
-        let there = entry(index, receiver, receiver.place + direction * (reach * receiver.per_mm), select(level, 0.0, k == 4));
-        if there.weight > 1e-3 { nearest = min(nearest, length(there.offset)); }
+        let there = entry(index, receiver, direction * reach, select(level, 0.0, k == 4));
+        if there.weight > 0.0 { nearest = min(nearest, length(there.offset)); }
     }
     return select(nearest, 0.0, nearest == NOTHING);
 }
 
-fn scattered(index: u32, position: vec3f) -> vec3f {
+// With the pattern in a plane of this normal.
+fn receiver_at(index: u32, position: vec3f, normal: vec3f, direction: vec3f) -> Receiver {
     let light = scene.lights[index];
-    let seen = in_light(light, position);
-    let width = 2.0 * light.half_width * mix(1.0, seen.z, light.perspective);
-    let receiver = Receiver(position, map_place(seen.xy * 2.0 / width), 1.0 / width, seen.z);
-    let texels = f32(textureDimensions(entering).x) * receiver.per_mm;
+    let axis = select(vec3f(1.0, 0.0, 0.0), vec3f(0.0, 1.0, 0.0), abs(normal.x) > 0.7);
+    let right = normalize(cross(axis, normal));
+    let foreshortening = dot(normal, direction) / dot(-light.forward, direction);
+    let width = 2.0 * light.half_width * mix(1.0, in_light(light, position).z, light.perspective);
+    let texels = f32(textureDimensions(entering).x) * sqrt(foreshortening) / width;
+    return Receiver(position, right, cross(normal, right), foreshortening, texels);
+}
 
-    let nearest = nearest_entry(index, receiver);
+fn scattered(index: u32, position: vec3f, normal: vec3f) -> vec3f {
+    let light = scene.lights[index];
+    let direction = to_light(light, position);
+    let across = receiver_at(index, position, direction, direction);
+    let nearest = nearest_entry(index, across);
+    // Near where light enters the pattern lies on the surface, for light that comes through across the light.
+    let flat = exp(-3.0 * nearest / dot(medium.z_real, vec3f(1.0)));
+    let cosine = dot(normal, direction);
+    let lifted = normal * select(-1.0, 1.0, cosine >= 0.0) + direction * max(LEAST_COSINE - abs(cosine), 0.0);
+    let receiver = receiver_at(index, position, normalize(mix(direction, lifted, flat)), direction);
+
     let nearest_squared = nearest * nearest;
     let energy = dot(medium.half_albedo * medium.share, beyond(nearest_squared + medium.z_real * medium.z_real, nearest_squared + medium.z_virtual * medium.z_virtual));
     let start = -log(clamp(energy, 1e-30, 1.0));
@@ -202,28 +223,27 @@ fn scattered(index: u32, position: vec3f) -> vec3f {
         let middle = max(radius_squared(start - log(1.0 - (first + 0.5 * f32(spokes)) / count)) - nearest_squared, 0.0);
         let radius = select(sqrt(clamp(middle, inner_squared, outer_squared)), 0.0, ring == 0u);
         let side = sqrt(3.14159265 * (outer_squared - inner_squared) / f32(spokes));
-        let level = max(log2(side * texels) - 0.5, 0.0);
+        let level = max(log2(side * receiver.texels) - 0.5, 0.0);
         for (var spoke = 0u; spoke < spokes; spoke++) {
             let angle = 6.2831853 * (f32(spoke) + 0.5) / f32(spokes) + 2.3999632 * f32(ring);
-            let place = receiver.place + vec2f(cos(angle), sin(angle)) * (radius * receiver.per_mm);
-            let there = entry(index, receiver, place, level);
-            sum += there.weight / (f32(spokes) * mix(1.0, square(there.widening * receiver.depth), light.perspective))
-                * ring_energy(there, radius, vec2f(inner_squared, outer_squared), last);
+            let there = entry(index, receiver, vec2f(cos(angle), sin(angle)) * radius, level);
+            sum += there.weight / f32(spokes) * ring_energy(there, radius, vec2f(inner_squared, outer_squared), last);
         }
         inner_squared = outer_squared;
     }
     return sum * light.colour * medium.half_albedo;
 }
 
-fn square(x: f32) -> f32 {
-    return x * x;
-}
-
-// Energy from a ring of the map as far away as `there`, up to the factor α'/2. The ring's edges only change the part of the distance that
-// lies in the plane of the map, so the integral is closed.
+// Energy from a ring of the pattern as far away as `there`, up to the factor α'/2. The ring's edges only change the part of the distance that
+// lies in the plane of the pattern, so the integral is closed.
 fn ring_energy(there: Entry, radius: f32, edges_squared: vec2f, endless: bool) -> vec3f {
     let widening = there.widening * there.widening;
-    let apart = dot(there.offset, there.offset) - radius * radius * widening;
+    let distance_squared = dot(there.offset, there.offset);
+    let flat_squared = radius * radius * widening;
+    let apart = distance_squared - flat_squared;
+    // A surface that bends back to the receiver is as good as a smaller ring.
+    var shrinking = 1.0;
+    if apart < 0.0 { shrinking = max(distance_squared / flat_squared, 1e-3); }
     let real_least = medium.z_real * medium.z_real;
     let virtual_least = medium.z_virtual * medium.z_virtual;
     var real = max(apart, 0.0) + real_least;
@@ -234,8 +254,8 @@ fn ring_energy(there: Entry, radius: f32, edges_squared: vec2f, endless: bool) -
         real = max(apart - 2.0 * along * medium.z_real + real_least, real_least);
         mirrored = max(apart + 2.0 * along * medium.z_virtual + virtual_least, real_least);
     }
-    let edges = edges_squared * widening;
+    let edges = edges_squared * (widening * shrinking);
     let all = beyond(real + edges.x, mirrored + edges.x);
-    if endless { return all; }
-    return all - beyond(real + edges.y, mirrored + edges.y);
+    if endless { return all / shrinking; }
+    return (all - beyond(real + edges.y, mirrored + edges.y)) / shrinking;
 }

@@ -61,7 +61,7 @@ fn a_body_that_moves_needs_nothing_new() {
         renderer.prepare(&gpu().queue, &second.frame()).unwrap();
         second.encode(&renderer, &geometry);
         let fresh = second.picture(rival);
-        let same = |picture| at_most("moved against new", apart(&fresh, picture), 0.0);
+        let same = |picture: &Picture| at_most("moved against new", apart(&fresh, picture), 0.0);
         holds(same(&read(&renderer)));
         notices(same(&before));
     }
@@ -90,7 +90,7 @@ fn geometry_follows_a_body() {
     geometry.follow(&mut encoder, &fixture.body).unwrap();
     renderer.encode(&mut encoder, &geometry);
     queue.submit([encoder.finish()]);
-    let same = |picture| at_most("following against uploaded", apart(&uploaded, picture), 0.0);
+    let same = |picture: &Picture| at_most("following against uploaded", apart(&uploaded, picture), 0.0);
     holds(same(&read(&renderer)));
     notices(same(&rest));
 }
