@@ -201,7 +201,7 @@ fn scattered(index: u32, position: vec3f, normal: vec3f) -> vec3f {
     let across = receiver_at(index, position, direction, direction);
     let nearest = nearest_entry(index, across);
     // Near where light enters the pattern lies on the surface, for light that comes through across the light.
-    let flat = exp(-3.0 * nearest / dot(medium.z_real, vec3f(1.0)));
+    let flat = exp(-6.0 * nearest / dot(medium.z_real, vec3f(1.0)));
     let cosine = dot(normal, direction);
     let lifted = normal * select(-1.0, 1.0, cosine >= 0.0) + direction * max(LEAST_COSINE - abs(cosine), 0.0);
     let receiver = receiver_at(index, position, normalize(mix(direction, lifted, flat)), direction);
@@ -223,7 +223,7 @@ fn scattered(index: u32, position: vec3f, normal: vec3f) -> vec3f {
         let middle = max(radius_squared(start - log(1.0 - (first + 0.5 * f32(spokes)) / count)) - nearest_squared, 0.0);
         let radius = select(sqrt(clamp(middle, inner_squared, outer_squared)), 0.0, ring == 0u);
         let side = sqrt(3.14159265 * (outer_squared - inner_squared) / f32(spokes));
-        let level = max(log2(side * receiver.texels) - 0.5, 0.0);
+        let level = max(log2(side * receiver.texels) - 1.0, 0.0);
         for (var spoke = 0u; spoke < spokes; spoke++) {
             let angle = 6.2831853 * (f32(spoke) + 0.5) / f32(spokes) + 2.3999632 * f32(ring);
             let there = entry(index, receiver, vec2f(cos(angle), sin(angle)) * radius, level);

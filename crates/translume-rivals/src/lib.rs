@@ -70,6 +70,22 @@ pub enum Rival {
     ScreenSpace(ScreenSpace),
 }
 
+impl std::fmt::Display for Rival {
+    /// As in tables.
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::TranslucentShadowMap(settings) => {
+                write!(f, "translucent shadow map, {} samples of {}²", settings.samples(), settings.map)?;
+                f.write_str(if settings.displaced { ", displaced" } else { "" })
+            }
+            Self::ScreenSpace(settings) => {
+                write!(f, "screen space, {} samples", settings.samples)?;
+                f.write_str(if settings.transmission { "" } else { ", opaque" })
+            }
+        }
+    }
+}
+
 /// A method, and pictures of one size.
 pub struct Renderer {
     kind: Kind,

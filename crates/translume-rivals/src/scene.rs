@@ -72,6 +72,9 @@ impl SceneLayout {
             let problem = format!("{} lights, but at most {MAX_LIGHTS} have a map", frame.lights.len());
             return Err(Error::Frame { problem, remedy: "leave lights out" });
         }
+        if !(frame.mm_per_unit > 0.0 && frame.mm_per_unit.is_finite()) {
+            return fail("a unit is no length", "give a finite mm_per_unit above 0");
+        }
         let [low, high] = frame.bounds.map(Vec3::from);
         if !((high - low).min_element() >= 0.0 && low.is_finite() && high.is_finite()) {
             return fail("the body's bounds are not a box", "give the least and the greatest corner, mm");

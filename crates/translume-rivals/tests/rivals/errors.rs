@@ -2,7 +2,7 @@
 
 use crate::scene::{Scene, before_camera, default_rivals, sun, wall};
 use translume::{AmbientLight, Camera, DirectionalLight, Light, Medium, PointLight};
-use translume_rivals::{Geometry, Renderer, Rival, ScreenSpace, TranslucentShadowMap};
+use translume_rivals::{Frame, Geometry, Renderer, Rival, ScreenSpace, TranslucentShadowMap};
 use translume_tests::gpu;
 
 fn scene() -> Scene {
@@ -54,12 +54,14 @@ fn frames_are_checked() {
         assert!(opaque.contains("ior"), "{opaque}");
         let empty = refusal(rival, |scene| scene.mesh.positions.clear());
         assert!(empty.contains("bounds"), "{empty}");
-        let flat = Camera { view_projection: glam::Mat4::IDENTITY.to_cols_array_2d(), eye: [0.0; 3] };
         let mut renderer = Renderer::new(&gpu().device, rival, [16; 2]).unwrap();
         let scene = scene();
-        let frame = translume_rivals::Frame { camera: flat, ..scene.frame() };
-        let message = renderer.prepare(&gpu().queue, &frame).unwrap_err().to_string();
-        assert!(message.contains("no perspective"), "{message}");
+        let mut message = |frame| renderer.prepare(&gpu().queue, &frame).unwrap_err().to_string();
+        let nothing = message(Frame { mm_per_unit: 0.0, ..scene.frame() });
+        assert!(nothing.contains("a unit is no length"), "{nothing}");
+        let flat = Camera { view_projection: glam::Mat4::IDENTITY.to_cols_array_2d(), eye: [0.0; 3] };
+        let flat = message(Frame { camera: flat, ..scene.frame() });
+        assert!(flat.contains("no perspective"), "{flat}");
     }
     let open = DirectionalLight { shadow: false, ..sun([0.0, 0.0, 1.0]) };
     let change = |scene: &mut Scene| scene.lights = vec![Light::Directional(open)];

@@ -18,7 +18,11 @@ fn subjects() -> Vec<(&'static str, translume_mesh::Mesh)> {
 }
 
 fn lit(kind: &str, mesh: translume_mesh::Mesh, medium: Medium, size: u32) -> Scene {
-    let lamp = Light::Point(PointLight { position: [-30.0, 40.0, -80.0], intensity: [1e4; 3], ..Default::default() });
+    let lamp = Light::Point(PointLight {
+        position: [-30.0, 40.0, -80.0],
+        intensity: [1e4; 3],
+        ..Default::default()
+    });
     let sun = Light::Directional(DirectionalLight { to_light: [0.6, 0.7, 0.5], ..Default::default() });
     let lights = match kind {
         "behind" => vec![lamp],
@@ -29,7 +33,7 @@ fn lit(kind: &str, mesh: translume_mesh::Mesh, medium: Medium, size: u32) -> Sce
     Scene { mesh, medium, lights, shot }
 }
 
-fn rivals() -> Vec<(String, Rival)> {
+fn rivals() -> Vec<Rival> {
     let maps = [
         (1, 4, 256, false),
         (4, 5, 256, false),
@@ -39,17 +43,14 @@ fn rivals() -> Vec<(String, Rival)> {
         (10, 12, 512, false),
         (16, 20, 1024, false),
     ];
-    let maps = maps.into_iter().map(|(rings, spokes, map, displaced)| {
-        let settings = TranslucentShadowMap { rings, spokes, map, displaced };
-        let name = format!("tsm {} of {map}{}", settings.samples(), if displaced { " displaced" } else { "" });
-        (name, Rival::TranslucentShadowMap(settings))
+    let maps = maps.map(|(rings, spokes, map, displaced)| {
+        Rival::TranslucentShadowMap(TranslucentShadowMap { rings, spokes, map, displaced })
     });
     let screens = [(11, true), (55, true), (200, true), (1000, true), (200, false)];
-    let screens = screens.into_iter().map(|(samples, transmission)| {
-        let settings = ScreenSpace { samples, transmission, ..Default::default() };
-        (format!("screen {samples}{}", if transmission { "" } else { " opaque" }), Rival::ScreenSpace(settings))
+    let screens = screens.map(|(samples, transmission)| {
+        Rival::ScreenSpace(ScreenSpace { samples, transmission, ..Default::default() })
     });
-    maps.chain(screens).collect()
+    maps.into_iter().chain(screens).collect()
 }
 
 /// Median of five frames, from submission to the end, ms.
@@ -76,16 +77,18 @@ fn errors_beside_times() {
     println!("| scene | rival | against dipole: RMSE, bias | against normalised diffusion | ms |");
     println!("| --- | --- | --- | --- | --- |");
     for (name, mesh) in subjects() {
-        for (kind, medium) in [("behind", "skimmilk"), ("sun", "skimmilk"), ("behind", "skin1"), ("sun", "skin1")] {
+        for (kind, medium) in
+            [("behind", "skimmilk"), ("sun", "skimmilk"), ("behind", "skin1"), ("sun", "skin1")]
+        {
             let scene = lit(kind, mesh.clone(), Medium::preset(medium).unwrap(), size);
-            let dipole = scene.judge(dipoles(&scene.medium), 12, 0.5);
-            let normalised = scene.judge(burley(&scene.medium), 12, 0.5);
-            for (rival_name, rival) in rivals() {
+            let dipole = scene.judge(dipoles(&scene.medium), 16, 1.0);
+            let normalised = scene.judge(burley(&scene.medium), 16, 1.0);
+            for rival in rivals() {
                 let (renderer, ms) = time(&scene, rival);
                 let picture = read(&renderer);
                 let [a, b] = [&dipole, &normalised].map(|judge| error(&picture, judge, size as usize));
                 println!(
-                    "| {name} {kind} {medium} | {rival_name} | {:.3} {:+.3} | {:.3} {:+.3} | {ms:.1} |",
+                    "| {name} {kind} {medium} | {rival} | {:.3} {:+.3} | {:.3} {:+.3} | {ms:.1} |",
                     a[0], a[1], b[0], b[1]
                 );
             }
@@ -100,8 +103,8 @@ fn pictures() {
     for (name, mesh) in subjects() {
         for kind in ["behind", "both"] {
             let scene = lit(kind, mesh.clone(), Medium::SKIMMILK, 512);
-            for (rival_name, rival) in rivals() {
-                save(&format!("{name} {kind} {rival_name}"), &scene.picture(rival), scene.shot.size);
+            for rival in rivals() {
+                save(&format!("{name} {kind} {rival}"), &scene.picture(rival), scene.shot.size);
             }
         }
     }

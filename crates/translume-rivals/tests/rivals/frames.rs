@@ -29,7 +29,8 @@ fn apart(a: &Picture, b: &Picture) -> f64 {
 fn sum_of_lights(rival: Rival, gain: f32) -> Check {
     let [both, one, other] =
         [vec![lamp(), key()], vec![lamp()], vec![key()]].map(|lights| scene(lights).picture(rival));
-    let add = |(a, b): (&[f32; 4], &[f32; 4])| [0, 1, 2, 3].map(|k| if k == 3 { a[k] } else { a[k] + gain * b[k] });
+    let add =
+        |(a, b): (&[f32; 4], &[f32; 4])| [0, 1, 2, 3].map(|k| if k == 3 { a[k] } else { a[k] + gain * b[k] });
     let summed: Picture = one.iter().zip(&other).map(add).collect();
     // Rounding, and a map's half floats are the same in both.
     at_most("lights one by one", apart(&both, &summed), 1e-5)

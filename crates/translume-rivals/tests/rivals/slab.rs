@@ -35,16 +35,16 @@ fn compare(rival: Rival, thickness: f32, tolerance: f64) -> Check {
 
 #[test]
 fn a_translucent_shadow_map_sees_through_a_sheet() {
-    // The ring integrals are exact for a sheet that faces the light, this one is tilted by 17°; measured 1 %.
+    // The ring integrals are exact for a sheet that faces the light, this one is tilted by 17°; measured 1.5 %.
     holds(compare(maps(), 2.0, 0.03));
     notices(compare(maps(), 2.2, 0.03));
 }
 
 #[test]
 fn screen_space_sees_through_it_by_thickness_alone() {
-    // Light is lit for as long as its way is: 4 % more than the sheet is thick; measured 6 %.
-    holds(compare(screen(true), 2.0, 0.12));
-    notices(compare(screen(true), 2.6, 0.12));
+    // The way through is 4 % longer than the sheet is thick; measured 3 %.
+    holds(compare(screen(true), 2.0, 0.08));
+    notices(compare(screen(true), 2.4, 0.08));
     let dark = |rival| {
         let light: f32 = sheet(2.0).picture(rival).iter().map(|p| p[1]).sum();
         at_most("light through a sheet", light.into(), 0.0)
