@@ -223,7 +223,8 @@ fn scattered(index: u32, position: vec3f, normal: vec3f) -> vec3f {
         let middle = max(radius_squared(start - log(1.0 - (first + 0.5 * f32(spokes)) / count)) - nearest_squared, 0.0);
         let radius = select(sqrt(clamp(middle, inner_squared, outer_squared)), 0.0, ring == 0u);
         let side = sqrt(3.14159265 * (outer_squared - inner_squared) / f32(spokes));
-        let level = max(log2(side * receiver.texels) - 1.0, 0.0);
+        // Filtering widens a texel: more where nothing is smooth, at the edges of shadows, than where light comes through.
+        let level = max(log2(side * receiver.texels) - mix(0.5, 1.0, flat), 0.0);
         for (var spoke = 0u; spoke < spokes; spoke++) {
             let angle = 6.2831853 * (f32(spoke) + 0.5) / f32(spokes) + 2.3999632 * f32(ring);
             let there = entry(index, receiver, vec2f(cos(angle), sin(angle)) * radius, level);
