@@ -229,10 +229,10 @@ pub(crate) fn disc(count: u32, length: f64) -> Vec<[f32; 4]> {
 
 /// Radius, in lengths d, inside which this share of the energy lies: the root of 1 − (e^(−r) + 3e^(−r/3))/4 = share, by bisection.
 fn quantile(share: f64) -> f64 {
-    let (mut low, mut high) = (0.0, 200.0);
+    let (mut low, mut high) = (0.0_f64, 200.0_f64);
     for _ in 0..60 {
         let middle = 0.5 * (low + high);
-        let enclosed = 1.0 - 0.25 * ((-middle as f64).exp() + 3.0 * (-middle / 3.0_f64).exp());
+        let enclosed = 1.0 - 0.25 * ((-middle).exp() + 3.0 * (-middle / 3.0).exp());
         if enclosed < share { low = middle } else { high = middle }
     }
     0.5 * (low + high)
