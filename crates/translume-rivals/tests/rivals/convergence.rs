@@ -37,7 +37,7 @@ fn translucent_shadow_maps_tend_to_the_integral() {
         scene.picture(Rival::TranslucentShadowMap(settings))
     };
     let mut pictures: Vec<_> = [(1, 4), (4, 5), (10, 12)].map(picture).into();
-    // What is left is the map: one depth a texel, edges of shadows; measured 3 %.
+    // What is left is the map: one depth a texel, edges of shadows; measured 2.5 %.
     holds(falls(&pictures, &judge, 0.06));
     pictures.swap(1, 2);
     notices(falls(&pictures, &judge, 1.0));

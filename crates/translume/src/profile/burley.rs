@@ -106,3 +106,24 @@ impl Radial for Burley {
         0.0
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_shape_is_that_of_the_profile() {
+        let medium = Medium::SKIN1;
+        let shape = BurleyFit::Diffuse.shape(&medium);
+        for (k, channel) in Channel::of(&medium).iter().enumerate() {
+            let profile = Burley::new(channel, BurleyFit::Diffuse, k);
+            let (albedo, d) = (f64::from(shape.albedo[k]), f64::from(shape.length[k]));
+            // The share inside of 2d, in closed form.
+            let inside = 1.0 - 0.25 * (-2.0_f64).exp() - 0.75 * (-2.0 / 3.0_f64).exp();
+            let off = |length: f64| (profile.enclosed(2.0 * length) / (albedo * inside) - 1.0).abs();
+            // f32.
+            assert!(off(d) < 1e-6, "{k}: {}", off(d));
+            assert!(off(1.05 * d) > 1e-2, "5 % of the length must be noticed");
+        }
+    }
+}
