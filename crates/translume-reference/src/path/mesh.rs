@@ -32,19 +32,19 @@ impl<'a> Closed<'a> {
 
 impl Shape for Closed<'_> {
     fn crossings(&self, origin: DVec3, direction: DVec3, found: &mut dyn FnMut(Crossing)) {
-        self.surface.every_hit(origin.to_array(), direction.to_array(), |hit, normal| {
+        self.surface.every_hit(origin.to_array(), direction.to_array(), f64::INFINITY, |hit, normal| {
             found(Crossing { t: hit.t, normal: normal.normalize_or_zero() });
-            [0.0, f64::INFINITY]
+            f64::INFINITY
         });
     }
 
-    fn first(&self, origin: DVec3, direction: DVec3, leaving: bool) -> Option<Crossing> {
+    fn first(&self, origin: DVec3, direction: DVec3, leaving: bool, within: f64) -> Option<Crossing> {
         let mut closest: Option<Crossing> = None;
-        self.surface.every_hit(origin.to_array(), direction.to_array(), |hit, normal| {
+        self.surface.every_hit(origin.to_array(), direction.to_array(), within, |hit, normal| {
             if (normal.dot(direction) > 0.0) == leaving {
                 closest = Some(Crossing { t: hit.t, normal });
             }
-            [0.0, closest.map_or(f64::INFINITY, |crossing| crossing.t)]
+            closest.map_or(within, |crossing| crossing.t)
         });
         closest.map(|crossing| Crossing { normal: crossing.normal.normalize_or_zero(), ..crossing })
     }
@@ -123,15 +123,20 @@ impl Grid {
 
     fn clearance(&self, point: DVec3) -> f64 {
         let place = (point - self.low) / self.edge;
-        let cell = place.floor();
-        if !self.holds(cell.as_ivec3()) {
+        // Rounding towards zero is rounding down from here on; casts saturate, and what is not a number is below nothing.
+        if place.cmplt(DVec3::ZERO).any() {
             return -1.0;
         }
-        let steps = f64::from(self.steps[self.index(cell.as_ivec3())]);
+        let cell = IVec3::new(place.x as i32, place.y as i32, place.z as i32);
+        if cell.cmpge(self.size).any() {
+            return -1.0;
+        }
+        let steps = f64::from(self.steps[self.index(cell)]);
         if steps <= 0.0 {
             return steps;
         }
-        let inset = (place - cell).min(cell + 1.0 - place).min_element();
+        let inset = place - cell.as_dvec3();
+        let inset = inset.min(1.0 - inset).min_element();
         (steps - 1.0 + inset) * self.edge
     }
 
@@ -195,9 +200,9 @@ fn for_each_cell(first: IVec3, last: IVec3, mut each: impl FnMut(IVec3)) {
 fn contains(surface: &Surface, point: DVec3) -> bool {
     let direction = DVec3::new(0.563_1, 0.687_3, 0.458_9).normalize();
     let mut sum = 0;
-    surface.every_hit(point.to_array(), direction.to_array(), |_, normal| {
+    surface.every_hit(point.to_array(), direction.to_array(), f64::INFINITY, |_, normal| {
         sum += if normal.dot(direction) > 0.0 { 1 } else { -1 };
-        [0.0, f64::INFINITY]
+        f64::INFINITY
     });
     sum > 0
 }

@@ -21,8 +21,6 @@ mod trace;
 mod volume;
 mod walk;
 
-use glam::DVec3;
-
 pub use mesh::Closed;
 pub use shape::{Ball, Block, Crossing, Shape};
 pub use trace::{Estimate, Progress, Trace};
@@ -30,10 +28,8 @@ pub use volume::Volume;
 
 use crate::Light;
 use crate::composite::Camera;
-use dice::Dice;
 use lamp::Lamp;
 use volume::Group;
-use walk::Harvest;
 
 /// Why no path is followed.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -103,20 +99,6 @@ impl<'a> PathTracer<'a> {
 
     fn is_matched(&self) -> bool {
         self.volume.ior == 1.0
-    }
-
-    /// One path for each group of channels.
-    fn sample(&self, eye: DVec3, direction: DVec3, dice: &mut Dice) -> Harvest {
-        let mut sum = Harvest::default();
-        for group in &self.groups {
-            let harvest = self.follow(group, eye, direction, dice);
-            sum.met |= harvest.met;
-            for k in 0..3 {
-                sum.radiance[k] += harvest.radiance[k];
-                sum.single[k] += harvest.single[k];
-            }
-        }
-        sum
     }
 }
 

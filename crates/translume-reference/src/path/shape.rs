@@ -16,10 +16,10 @@ pub trait Shape: Sync {
     /// Calls `found` for every crossing of a ray, in no order.
     fn crossings(&self, origin: DVec3, direction: DVec3, found: &mut dyn FnMut(Crossing));
 
-    /// The first crossing towards the outside (`leaving`) or towards the inside.
-    fn first(&self, origin: DVec3, direction: DVec3, leaving: bool) -> Option<Crossing>;
+    /// The first crossing towards the outside (`leaving`) or towards the inside, no further than `within` mm.
+    fn first(&self, origin: DVec3, direction: DVec3, leaving: bool, within: f64) -> Option<Crossing>;
 
-    /// A lower bound of the distance to the boundary, mm, where the point is inside; 0 or less elsewhere.
+    /// A lower bound of the distance to the boundary, mm, where the point is inside; 0 or less elsewhere, and negative only outside.
     fn clearance(&self, point: DVec3) -> f64;
 }
 
@@ -63,8 +63,8 @@ impl Shape for Ball {
         both.into_iter().flatten().filter(|crossing| crossing.t >= 0.0).for_each(found);
     }
 
-    fn first(&self, origin: DVec3, direction: DVec3, leaving: bool) -> Option<Crossing> {
-        choose(self.both(origin, direction)?, leaving)
+    fn first(&self, origin: DVec3, direction: DVec3, leaving: bool, within: f64) -> Option<Crossing> {
+        choose(self.both(origin, direction)?, leaving).filter(|crossing| crossing.t <= within)
     }
 
     fn clearance(&self, point: DVec3) -> f64 {
@@ -112,8 +112,8 @@ impl Shape for Block {
         both.into_iter().flatten().filter(|crossing| crossing.t >= 0.0).for_each(found);
     }
 
-    fn first(&self, origin: DVec3, direction: DVec3, leaving: bool) -> Option<Crossing> {
-        choose(self.both(origin, direction)?, leaving)
+    fn first(&self, origin: DVec3, direction: DVec3, leaving: bool, within: f64) -> Option<Crossing> {
+        choose(self.both(origin, direction)?, leaving).filter(|crossing| crossing.t <= within)
     }
 
     fn clearance(&self, point: DVec3) -> f64 {

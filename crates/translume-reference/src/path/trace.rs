@@ -5,11 +5,18 @@ use rayon::prelude::*;
 
 use super::PathTracer;
 use super::dice::Dice;
+use super::volume::Group;
 use super::walk::Harvest;
 use crate::composite::Camera;
 
 /// Pixels between two looks at the clock.
 const BATCH: usize = 2048;
+
+/// Neighbours on each side whose spread is averaged where [`Trace::focus`] looks: few paths alone know little of rare light.
+const REACH: usize = 2;
+
+/// Every pixel of the body gets at least this share of the paths of an average one.
+const LEAST: f64 = 0.1;
 
 /// A picture under way.
 pub struct Trace<'a> {
@@ -21,9 +28,13 @@ pub struct Trace<'a> {
 }
 
 /// What the paths of a pixel brought so far.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 struct Sums {
-    count: u32,
+    /// Paths per path of an average pixel, for each group of channels.
+    share: [f32; 3],
+    count: [u32; 3],
+    /// Of all channels, and how many of them met the body.
+    paths: u32,
     met: u32,
     radiance: [f64; 3],
     squares: [f64; 3],
@@ -39,14 +50,14 @@ pub struct Estimate {
     pub height: usize,
     /// Radiance, W/(m² sr).
     pub radiance: Vec<[f64; 3]>,
-    /// One standard error of it; infinite where fewer than two paths were followed.
+    /// One standard error of it; not known, and 0, where fewer than two paths were followed.
     pub error: Vec<[f64; 3]>,
     /// The part that was scattered once.
     pub single: Vec<[f64; 3]>,
     /// Share of each pixel that the body fills, 0..=1.
     pub coverage: Vec<f64>,
-    /// Paths of each pixel.
-    pub samples: Vec<u32>,
+    /// Paths of each pixel and channel.
+    pub samples: Vec<[u32; 3]>,
 }
 
 /// How far a pass has come.
@@ -60,7 +71,7 @@ pub struct Progress {
 
 impl<'a> Trace<'a> {
     pub(super) fn new(tracer: &'a PathTracer<'a>, camera: Camera, seed: u64) -> Self {
-        let pixels = vec![Sums::default(); camera.width * camera.height];
+        let pixels = vec![Sums::new([1.0; 3]); camera.width * camera.height];
         Self { tracer, camera, seed, passes: 0, pixels }
     }
 
@@ -84,13 +95,67 @@ impl<'a> Trace<'a> {
 
     fn add(&self, pixel: usize, samples: u32, sums: &mut Sums) {
         let (column, row) = (pixel % self.camera.width, pixel / self.camera.width);
-        let mut dice = Dice::new([self.seed, self.passes, pixel as u64, 0]);
-        for _ in 0..samples {
-            let [x, y] = dice.pair();
-            let direction = self.camera.direction_at(column as f64 + x, row as f64 + y);
-            let direction = DVec3::from(direction).normalize_or_zero();
-            sums.add(&self.tracer.sample(self.camera.eye.into(), direction, &mut dice));
+        for (index, group) in self.tracer.groups.iter().enumerate() {
+            let mut dice = Dice::new([self.seed, self.passes, pixel as u64, index as u64]);
+            // A broken number of paths is rounded up as often as it is right on average.
+            let count = (f64::from(samples) * f64::from(sums.share[index]) + dice.roll()) as u32;
+            for _ in 0..count {
+                let [x, y] = dice.pair();
+                let direction = self.camera.direction_at(column as f64 + x, row as f64 + y);
+                let direction = DVec3::from(direction).normalize_or_zero();
+                let harvest = self.tracer.follow(group, self.camera.eye.into(), direction, &mut dice);
+                sums.add(&harvest, group);
+            }
         }
+    }
+
+    /// Learns from the paths so far which pixels and channels are the noisiest, and forgets what they brought: later passes spend their
+    /// paths so that [`Estimate::noise`] falls fastest, as many in all as before. Because the choice is made once, from paths that do not
+    /// count, no bias follows. A few dozen paths of each pixel are enough.
+    pub fn focus(&mut self) {
+        let mut shares = vec![[0.0; 3]; self.pixels.len()];
+        for (index, group) in self.tracer.groups.iter().enumerate() {
+            let variances = self.variances(group);
+            let spreads: Vec<f64> = (0..self.pixels.len()).map(|pixel| self.around(pixel, &variances).sqrt()).collect();
+            let sum: f64 = spreads.iter().sum();
+            let reached = spreads.iter().filter(|&&spread| spread > 0.0).count();
+            for (share, spread) in shares.iter_mut().zip(spreads).filter(|(_, spread)| *spread > 0.0) {
+                // Paths in proportion to the spread make the sum of squared errors least. It falls to the square of the sum of spreads
+                // over the number of paths, so a group needs as many as its sum to be as good as the others.
+                share[index] = (spread + LEAST * sum / reached as f64) * sum;
+            }
+        }
+        let total: f64 = shares.as_flattened().iter().sum();
+        if total > 0.0 {
+            let asked = shares.as_flattened().iter().filter(|&&share| share > 0.0).count() as f64;
+            let scaled = shares.into_iter().map(|share| share.map(|share| (share * asked / total) as f32));
+            self.pixels = scaled.map(Sums::new).collect();
+        }
+    }
+
+    /// Variance of one path's light over the square of the picture's mean, of the channels of a group together.
+    fn variances(&self, group: &Group) -> Vec<f64> {
+        let channels = || (0..3).filter(|&k| group.albedo[k] > 0.0);
+        let mean = |k: usize| {
+            let touched = self.pixels.iter().filter(|sums| sums.met > 0);
+            let (sum, count) = touched.fold((0.0, 0), |(sum, n), sums| (sum + sums.mean(sums.radiance)[k], n + 1));
+            sum / f64::from(count.max(1))
+        };
+        let means: [f64; 3] = std::array::from_fn(mean);
+        let of = |sums: &Sums| {
+            channels().filter(|&k| means[k] > 0.0).map(|k| sums.variance(k) / means[k].powi(2)).sum()
+        };
+        self.pixels.iter().map(of).collect()
+    }
+
+    /// Mean of a value over a pixel and its neighbours.
+    fn around(&self, pixel: usize, values: &[f64]) -> f64 {
+        let (width, height) = (self.camera.width, self.camera.height);
+        let range = |at: usize, end: usize| at.saturating_sub(REACH)..(at + REACH + 1).min(end);
+        let (columns, rows) = (range(pixel % width, width), range(pixel / width, height));
+        let count = (columns.len() * rows.len()) as f64;
+        let sum: f64 = rows.map(|row| values[row * width + columns.start..row * width + columns.end].iter().sum::<f64>()).sum();
+        sum / count
     }
 
     /// What has been found so far.
@@ -103,17 +168,23 @@ impl<'a> Trace<'a> {
             radiance: each(|sums| sums.mean(sums.radiance)),
             error: each(Sums::error),
             single: each(|sums| sums.mean(sums.single)),
-            coverage: self.pixels.iter().map(|sums| f64::from(sums.met) / f64::from(sums.count.max(1))).collect(),
+            coverage: self.pixels.iter().map(|sums| f64::from(sums.met) / f64::from(sums.paths.max(1))).collect(),
             samples: self.pixels.iter().map(|sums| sums.count).collect(),
         }
     }
 }
 
 impl Sums {
-    fn add(&mut self, harvest: &Harvest) {
-        self.count += 1;
+    fn new(share: [f32; 3]) -> Self {
+        let (count, none) = ([0; 3], [0.0; 3]);
+        Self { share, count, paths: 0, met: 0, radiance: none, squares: none, single: none }
+    }
+
+    fn add(&mut self, harvest: &Harvest, group: &Group) {
+        self.paths += 1;
         self.met += u32::from(harvest.met);
-        for k in 0..3 {
+        for k in (0..3).filter(|&k| group.albedo[k] > 0.0) {
+            self.count[k] += 1;
             self.radiance[k] += harvest.radiance[k];
             self.squares[k] += harvest.radiance[k] * harvest.radiance[k];
             self.single[k] += harvest.single[k];
@@ -121,19 +192,18 @@ impl Sums {
     }
 
     fn mean(&self, sum: [f64; 3]) -> [f64; 3] {
-        sum.map(|sum| sum / f64::from(self.count.max(1)))
+        std::array::from_fn(|k| sum[k] / f64::from(self.count[k].max(1)))
+    }
+
+    /// Of one path's light, without bias; 0 of fewer than two paths.
+    fn variance(&self, channel: usize) -> f64 {
+        let count = f64::from(self.count[channel].max(2));
+        let mean = self.radiance[channel] / count;
+        ((self.squares[channel] / count - mean * mean) * count / (count - 1.0)).max(0.0)
     }
 
     fn error(&self) -> [f64; 3] {
-        if self.count < 2 {
-            return [f64::INFINITY; 3];
-        }
-        let count = f64::from(self.count);
-        std::array::from_fn(|k| {
-            let mean = self.radiance[k] / count;
-            let variance = (self.squares[k] / count - mean * mean).max(0.0);
-            (variance / (count - 1.0)).sqrt()
-        })
+        std::array::from_fn(|k| (self.variance(k) / f64::from(self.count[k].max(1))).sqrt())
     }
 }
 

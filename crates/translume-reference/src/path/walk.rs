@@ -94,7 +94,7 @@ impl Walk<'_> {
 
     /// Through a refracting boundary; what it mirrors is not part of the picture.
     fn refract_in(&mut self) {
-        let Some(crossing) = self.tracer.shape.first(self.origin, self.direction, false) else {
+        let Some(crossing) = self.tracer.shape.first(self.origin, self.direction, false, f64::INFINITY) else {
             return;
         };
         self.harvest.met = true;
@@ -146,20 +146,17 @@ impl Walk<'_> {
                     self.place(self.travelled + left);
                     return true;
                 }
-                // Rounding can leave a point outside of a sharp edge; such paths, one in billions, end.
-                let Some(crossing) = shape.first(at, self.direction, true) else {
-                    return false;
-                };
-                if left <= crossing.t {
+                let Some(crossing) = shape.first(at, self.direction, true, left) else {
                     self.place(self.travelled + left);
-                    return true;
-                }
+                    // Rounding can leave a path outside of a sharp edge, one in billions.
+                    return shape.clearance(self.origin) >= 0.0;
+                };
                 left -= crossing.t;
                 self.inside += crossing.t;
                 self.travelled += crossing.t;
                 is_inside = self.is_kept(&crossing, true);
             } else {
-                let crossing = shape.first(self.at(), self.direction, false);
+                let crossing = shape.first(self.at(), self.direction, false, f64::INFINITY);
                 self.meet_lights(crossing.map_or(f64::INFINITY, |crossing| crossing.t));
                 let Some(crossing) = crossing else {
                     return false;
