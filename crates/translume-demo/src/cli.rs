@@ -14,6 +14,7 @@ Examples:
   translume render bunny.obj --into egg --frames 48 -o egg.png         whatever is closed melts
   translume render --scene scene.json -o scene.exr                     linear radiance, full float
   translume render creature --frames 9 --timings -o morph.png          and how long each stage took
+  translume trace scene.json --noise 0.05 -o truth.exr                 the same scene by paths: slow, and exact but for noise
   translume inspect bunny.obj --json
   translume inspect creature teapot bunny.obj --table                  a line for each
   translume report --suite gather -o report                            error beside time of every kind of light
@@ -37,6 +38,9 @@ pub enum Command {
     /// Render a model or a scene to a PNG (tone-mapped sRGB) or an EXR (linear radiance).
     #[command(after_help = EXAMPLES)]
     Render(Box<Render>),
+    /// Follow paths of light through a scene: the truth that pictures are held against, to a PNG or an EXR.
+    #[command(after_help = EXAMPLES)]
+    Trace(Trace),
     /// Tell what a model holds and how it unwraps.
     #[command(after_help = EXAMPLES)]
     Inspect(Inspect),
@@ -159,6 +163,42 @@ fn degrees(text: &str) -> Result<[f32; 2], String> {
         Some((Some(yaw), Some(pitch))) => Ok([yaw, pitch]),
         _ => Err("give two numbers with a comma between, as 14,9".to_owned()),
     }
+}
+
+/// `translume trace`.
+#[derive(Debug, Args)]
+pub struct Trace {
+    /// Scene description in JSON.
+    #[arg(value_name = "SCENE.json")]
+    pub scene: PathBuf,
+    /// Stop at this noise: root mean square of the pixels' standard errors over the mean of the picture. By default 0.05, if nothing else ends
+    /// the work.
+    #[arg(long, value_name = "X")]
+    pub noise: Option<f64>,
+    /// Stop after so many seconds.
+    #[arg(long, value_name = "N")]
+    pub seconds: Option<f64>,
+    /// Stop after so many paths a pixel and channel. Alone, every pixel gets as many; with --noise or --seconds noisy pixels get more.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..))]
+    pub samples: Option<u32>,
+    /// Width of the picture in pixels; the height follows the scene's camera, else the picture is square.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=16384))]
+    pub size: Option<u32>,
+    /// Where random numbers begin: another number gives other noise.
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub seed: u64,
+    /// Brightness of a PNG, in stops.
+    #[arg(long, value_name = "EV", default_value_t = 0.0, allow_negative_numbers = true)]
+    pub exposure: f32,
+    /// Standard error of every pixel, .exr.
+    #[arg(long, value_name = "FILE")]
+    pub stderr: Option<PathBuf>,
+    /// Light that was scattered once, .exr.
+    #[arg(long, value_name = "FILE")]
+    pub single: Option<PathBuf>,
+    /// Picture to write, .png or .exr; it is there after a few seconds and gets better until the work ends.
+    #[arg(short, long, value_name = "FILE")]
+    pub output: PathBuf,
 }
 
 /// `translume inspect`.

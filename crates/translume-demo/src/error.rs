@@ -19,6 +19,8 @@ pub enum Error {
     #[error(transparent)]
     Spherical(#[from] SphericalError),
     #[error(transparent)]
+    Path(#[from] translume_reference::path::PathError),
+    #[error(transparent)]
     Translume(#[from] translume::Error),
     #[error("{}: {problem}", path.display())]
     Scene { path: PathBuf, problem: String },

@@ -15,6 +15,8 @@ mod report;
 mod scene;
 mod studio;
 mod timings;
+mod trace;
+mod twin;
 
 use clap::Parser as _;
 use std::process::ExitCode;
@@ -24,6 +26,7 @@ fn main() -> ExitCode {
     let result = match cli::Arguments::parse().command {
         cli::Command::Render(arguments) => render::run(&arguments),
         cli::Command::Inspect(arguments) => inspect::run(&arguments),
+        cli::Command::Trace(arguments) => trace::run(&arguments),
         cli::Command::Report(arguments) => report::run(&arguments),
     };
     match result {

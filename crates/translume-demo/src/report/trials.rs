@@ -2,7 +2,8 @@
 
 use super::scenes;
 use super::subject::Subject;
-use super::twin::{self, Twin};
+use super::twin::Twin;
+use crate::twin;
 use std::sync::Arc;
 use translume::{
     DirectionalLight, EnvironmentLight, EnvironmentMap, Error, Light, ShadowOptions, SphereLight,

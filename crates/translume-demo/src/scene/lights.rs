@@ -2,6 +2,7 @@
 
 use crate::environment::Environment;
 use crate::error::Error;
+use crate::twin;
 use serde::Deserialize;
 use std::path::Path;
 use translume::{
@@ -111,6 +112,19 @@ impl SceneLight {
         if let Self::Environment(environment) = self {
             environment.file = directory.join(&environment.file);
         }
+    }
+
+    /// As the reference takes it, in millimetres.
+    pub fn twins(
+        &self,
+        just_below_y0: f32,
+        mm_per_unit: f64,
+    ) -> Result<Vec<translume_reference::Light>, Error> {
+        if let Self::Environment(environment) = self {
+            return Ok(vec![environment.twin()?]);
+        }
+        let lights = self.lights(just_below_y0)?;
+        Ok(lights.iter().filter_map(|light| twin::light(light, mm_per_unit)).collect())
     }
 
     /// As the library takes it: an environment may become several. `just_below_y0` is the height that still counts as the face y = 0.

@@ -218,6 +218,12 @@ impl std::fmt::Display for SceneAnimation {
 }
 
 impl SceneCamera {
+    /// With so many pixels across, and as many down as its shape asks for.
+    pub fn resized(self, width: u32) -> Self {
+        let height = (f64::from(width) * f64::from(self.height) / f64::from(self.width)).round() as u32;
+        Self { width, height: height.max(1), ..self }
+    }
+
     fn validate(&self) -> Result<(), String> {
         let sight: [f32; 3] = std::array::from_fn(|k| self.target[k] - self.eye[k]);
         let side = glam::Vec3::from(sight).cross(self.up.into());

@@ -1,0 +1,108 @@
+//! A scene as paths see it.
+
+use crate::error::Error;
+use crate::framing;
+use crate::motion::{Motion, Wish};
+use crate::render::DEFAULT_SIZE;
+use crate::scene::{Scene, SceneCamera, Shape};
+use crate::twin;
+use std::path::Path;
+use translume_reference::composite::Camera;
+use translume_reference::path::{Ball, Block, Volume};
+use translume_reference::{Light, Medium, Surface};
+
+/// The angles from which a scene without a camera is seen, as those of `render`.
+const VIEW: [f32; 2] = [14.0, 9.0];
+
+/// A body with its lights and who looks at it, in millimetres.
+pub struct Subject {
+    pub body: Body,
+    pub volume: Volume,
+    pub lights: Vec<Light>,
+    pub camera: Camera,
+}
+
+/// What paths run through.
+pub enum Body {
+    /// A closed surface.
+    Mesh(Surface),
+    /// An exact sphere.
+    Ball(Ball),
+    /// An exact box.
+    Block(Block),
+}
+
+impl Subject {
+    /// Reads a scene. Spheres and boxes that nothing deforms are exact.
+    pub fn from_scene(path: &Path, width: Option<u32>) -> Result<Self, Error> {
+        let scene = Scene::read(path)?;
+        let mm_per_unit = f64::from(scene.length_unit.mm());
+        let (model, is_flat) = scene.model(path)?;
+        let wish = scene.wish();
+        let motion = Motion::new(&model, &wish, 1)?;
+        let points = motion.points()?;
+        let body = exact(&scene.shape, &wish, mm_per_unit).unwrap_or_else(|| {
+            let positions =
+                points.iter().map(|p| p.to_array().map(|x| f64::from(x) * mm_per_unit)).collect();
+            let triangles = model.mesh.triangles.clone();
+            Body::Mesh(if is_flat {
+                Surface::flat(positions, triangles)
+            } else {
+                Surface::smooth(positions, triangles)
+            })
+        });
+        let seen = framing::Subject::new(points);
+        let camera = scene.camera.unwrap_or_else(|| seen.camera(DEFAULT_SIZE, VIEW));
+        let camera = width.map_or(camera, |width| camera.resized(width));
+        let lights = match &scene.lights {
+            Some(lights) => {
+                let just_below_y0 = -1e-4 * model.mesh.diagonal();
+                let twins = lights.iter().map(|light| light.twins(just_below_y0, mm_per_unit));
+                twins.collect::<Result<Vec<_>, _>>()?.concat()
+            }
+            None => seen.lamps(VIEW).iter().filter_map(|light| twin::light(light, mm_per_unit)).collect(),
+        };
+        let g = scene.material.map_or(0.0, |material| f64::from(material.g));
+        let medium = scene.medium()?.unwrap_or_default();
+        Ok(Self {
+            body,
+            volume: Volume::new(&double(&medium), g),
+            lights,
+            camera: in_mm(&camera, mm_per_unit),
+        })
+    }
+}
+
+fn exact(shape: &Shape, wish: &Wish, mm_per_unit: f64) -> Option<Body> {
+    let mm = |p: [f32; 3]| p.map(|x| f64::from(x) * mm_per_unit);
+    if wish.twist_deg != 0.0 || wish.bend_deg != 0.0 || wish.inflate != 0.0 {
+        return None;
+    }
+    match *shape {
+        Shape::Sphere { center, radius } => {
+            Some(Body::Ball(Ball { center: mm(center), radius: f64::from(radius) * mm_per_unit }))
+        }
+        Shape::Box { min, max } => Some(Body::Block(Block { low: mm(min), high: mm(max) })),
+        _ => None,
+    }
+}
+
+fn double(medium: &translume::Medium) -> Medium {
+    Medium {
+        sigma_s_prime: medium.sigma_s_prime.map(f64::from),
+        sigma_a: medium.sigma_a.map(f64::from),
+        ior: medium.ior.into(),
+    }
+}
+
+fn in_mm(camera: &SceneCamera, mm_per_unit: f64) -> Camera {
+    let mm = |p: [f32; 3]| p.map(|x| f64::from(x) * mm_per_unit);
+    Camera {
+        eye: mm(camera.eye),
+        target: mm(camera.target),
+        up: camera.up.map(f64::from),
+        fov: f64::from(camera.fov_deg).to_radians(),
+        width: camera.width as usize,
+        height: camera.height as usize,
+    }
+}
