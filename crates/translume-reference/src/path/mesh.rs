@@ -206,3 +206,59 @@ fn contains(surface: &Surface, point: DVec3) -> bool {
     });
     sum > 0
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::dice::Dice;
+    use super::*;
+    use crate::testing::octasphere;
+
+    /// A thick shell: a sphere with a hollow one in its middle.
+    fn shell() -> Surface {
+        let (mut positions, mut triangles) = octasphere(3.0, 4);
+        let (more, others) = octasphere(1.0, 4);
+        let count = positions.len() as u32;
+        positions.extend(more);
+        triangles.extend(others.into_iter().map(|[a, b, c]| [a + count, c + count, b + count]));
+        Surface::flat(positions, triangles)
+    }
+
+    /// The bound is one, is not below a half of the distance by much, and knows the hollow from the body.
+    #[test]
+    fn clearance_is_a_close_bound_inside_alone() {
+        let surface = shell();
+        let shell = Closed::new(&surface).unwrap();
+        let mut dice = Dice::new([0; 4]);
+        let edge = 6.0 / CELLS;
+        for _ in 0..20_000 {
+            let point = DVec3::new(dice.roll(), dice.roll(), dice.roll()) * 8.0 - 4.0;
+            let (r, clearance) = (point.length(), shell.clearance(point));
+            let distance = (3.0 - r).min(r - 1.0);
+            // Facets lie within 0.6 % of the radius, and cells along them touch boxes around whole triangles, 0.3 wide at most.
+            assert!(clearance <= distance.max(0.0), "{point}: {clearance} {distance}");
+            let least = distance / 3.0f64.sqrt() - 0.3 - 2.0 * edge;
+            assert!(clearance >= least || distance < 0.0, "{point}: {clearance} {distance}");
+            assert!(clearance >= 0.0 || distance < 0.02, "{point}: {clearance} {distance}");
+            assert!(distance < 1.0 || clearance > 0.0, "the bound must be of use");
+        }
+        assert!(shell.clearance(DVec3::ZERO) < 0.0, "the hollow is outside");
+        let filled = octasphere(3.0, 4);
+        let filled = Surface::flat(filled.0, filled.1);
+        assert!(Closed::new(&filled).unwrap().clearance(DVec3::ZERO) > 1.5);
+    }
+
+    #[test]
+    fn crossings_tell_their_side() {
+        let surface = shell();
+        let shell = Closed::new(&surface).unwrap();
+        let (origin, direction) = (DVec3::new(-5.0, 0.11, 0.13), DVec3::X);
+        let mut found = Vec::new();
+        shell.crossings(origin, direction, &mut |crossing| found.push((crossing.t, crossing.leaves(direction))));
+        found.sort_by(|a, b| a.0.total_cmp(&b.0));
+        assert_eq!(found.iter().map(|crossing| crossing.1).collect::<Vec<_>>(), [false, true, false, true]);
+        for (leaving, expected) in [(false, found[0].0), (true, found[1].0)] {
+            assert_eq!(shell.first(origin, direction, leaving, 100.0).unwrap().t, expected);
+            assert_eq!(shell.first(origin, direction, leaving, expected - 1e-6), None);
+        }
+    }
+}

@@ -83,3 +83,54 @@ pub(super) struct Group {
     /// σ_s / σ_t; 0 in channels of other groups.
     pub albedo: [f64; 3],
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn volume(g: f64) -> Volume {
+        Volume { sigma_s: [1.0; 3], sigma_a: [0.0; 3], g, ior: 1.0 }
+    }
+
+    /// Mean of a function of the angle's cosine over many scatterings.
+    fn mean(g: f64, of: impl Fn(f64) -> f64) -> f64 {
+        let (volume, axis) = (volume(g), DVec3::new(0.48, 0.6, -0.64));
+        let mut dice = Dice::new([1, 2, 3, 4]);
+        let count = 200_000;
+        let each = (0..count).map(|_| volume.scatter(axis, &mut dice).dot(axis));
+        each.map(of).sum::<f64>() / f64::from(count)
+    }
+
+    /// The moments of the phase function are powers of g.
+    #[test]
+    fn scattering_has_the_mean_cosine() {
+        for g in [-0.7, -1e-5, 0.0, 1e-3, 0.3, 0.9] {
+            let [first, second] = [mean(g, |cos| cos), mean(g, |cos| 1.5 * cos * cos - 0.5)];
+            // The standard error of a mean of 200,000 numbers between −1 and 1 is below 0.0014.
+            assert!((first - g).abs() < 0.005 && (second - g * g).abs() < 0.005, "{g}: {first} {second}");
+            assert!((first - g - 0.01).abs() > 0.005, "a hundredth must be noticed");
+        }
+    }
+
+    /// Directions are as frequent as the density says: the mean of 1/density is the whole sphere.
+    #[test]
+    fn density_is_that_of_the_directions() {
+        for g in [-0.5, 0.0, 0.4] {
+            let area = mean(g, |cos| 1.0 / volume(g).phase(cos)) / (2.0 * TAU);
+            // 1/density varies by 27 between forwards and backwards at |g| = 0.5: standard error 0.3 %.
+            assert!((area - 1.0).abs() < 0.015, "{g}: {area}");
+            let other = mean(g, |cos| 1.0 / volume(g + 0.05).phase(cos)) / (2.0 * TAU);
+            assert!((other - 1.0).abs() > 0.005 || g == 0.0, "{g}: {other}");
+        }
+    }
+
+    #[test]
+    fn channels_of_equal_extinction_share_paths() {
+        let mixed = Volume { sigma_s: [1.0, 2.0, 0.5], sigma_a: [0.5, 0.0, 1.0], ..volume(0.0) };
+        let groups = mixed.groups();
+        assert_eq!(groups.len(), 2);
+        assert_eq!(groups[0], Group { sigma_t: 1.5, albedo: [1.0 / 1.5, 0.0, 0.5 / 1.5] });
+        assert_eq!(groups[1], Group { sigma_t: 2.0, albedo: [0.0, 1.0, 0.0] });
+        assert!(Volume { sigma_s: [0.0; 3], ..mixed }.groups().is_empty());
+    }
+}
