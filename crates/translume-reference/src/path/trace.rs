@@ -103,8 +103,7 @@ impl<'a> Trace<'a> {
                 let [x, y] = dice.pair();
                 let direction = self.camera.direction_at(column as f64 + x, row as f64 + y);
                 let direction = DVec3::from(direction).normalize_or_zero();
-                let harvest = self.tracer.follow(group, self.camera.eye.into(), direction, &mut dice);
-                sums.add(&harvest, group);
+                sums.add(&self.tracer.follow(group, self.camera.eye.into(), direction, &mut dice), group);
             }
         }
     }

@@ -12,9 +12,6 @@ use crate::rgb::accumulate;
 /// Roulette sets in where a path's weight falls below this.
 const LIGHT: f64 = 0.3;
 
-/// Paths that share the way from the eye into an index-matched body.
-const FAMILY: u32 = 8;
-
 /// Mean optical depth towards a light up to which a connection is surely made.
 const SURE: f64 = 1.0;
 
@@ -50,7 +47,7 @@ struct Walk<'a> {
 }
 
 impl PathTracer<'_> {
-    /// Follows paths from the eye along a unit direction, and returns what they bring on average.
+    /// Follows a path from the eye along a unit direction.
     pub(super) fn follow(&self, group: &Group, eye: DVec3, direction: DVec3, dice: &mut Dice) -> Harvest {
         let mut walk = Walk {
             tracer: self,
@@ -71,35 +68,27 @@ impl PathTracer<'_> {
 }
 
 impl Walk<'_> {
-    /// First collisions on the straight way through an index-matched body. Light that does not collide is not part of the picture, so
-    /// collisions are certain and weigh as much as they are probable. Several paths share the way, each in its own part of the depth.
+    /// The first collision on the straight way through an index-matched body. Light that does not collide is not part of the picture,
+    /// so the collision is certain and weighs as much as it is probable.
     fn collide_ahead(&mut self) {
         let mut crossings = Vec::new();
-        let (eye, direction) = (self.origin, self.direction);
-        self.tracer.shape.crossings(eye, direction, &mut |crossing| crossings.push(crossing));
+        self.tracer.shape.crossings(self.origin, self.direction, &mut |crossing| crossings.push(crossing));
         self.harvest.met = !crossings.is_empty();
         crossings.sort_by(|a, b| a.t.total_cmp(&b.t));
-        let segments = segments(&crossings, direction);
+        let segments = segments(&crossings, self.direction);
         let length: f64 = segments.iter().map(|[from, to]| to - from).sum();
         let probability = -(-self.group.sigma_t * length).exp_m1();
         if probability <= 0.0 {
             return;
         }
-        let weight = self.weight.map(|weight| weight * probability / f64::from(FAMILY));
-        for k in 0..FAMILY {
-            let share = (f64::from(k) + self.dice.roll()) / f64::from(FAMILY);
-            let mut left = -(-share * probability).ln_1p() / self.group.sigma_t;
-            let reached = segments.iter().find(|[from, to]| {
-                let is_here = left <= to - from;
-                left -= if is_here { 0.0 } else { to - from };
-                is_here
-            });
-            // Rounding can put a collision behind the end.
-            if let Some([from, _]) = reached {
-                (self.weight, self.scatterings, self.direction) = (weight, 0, direction);
-                self.place_at(eye + direction * (from + left));
-                self.wander();
+        let mut left = -(-self.dice.roll() * probability).ln_1p() / self.group.sigma_t;
+        for [from, to] in segments {
+            if left <= to - from {
+                self.weight = self.weight.map(|weight| weight * probability);
+                self.place(from + left);
+                return self.wander();
             }
+            left -= to - from;
         }
     }
 
