@@ -197,7 +197,11 @@ fn light_that_does_not_leave_is_absorbed() {
         let exact = 4.0 / 3.0 * ior * ior;
         // 110,000 paths; the error includes how pixels differ. Measured 1.5 to 3 %.
         assert!(error < 0.04 * exact, "{error}");
-        assert!(agree([sum / covered, error], exact, 3.0), "{ior} {sigma_t} {g}: {} ± {error}, {exact}", sum / covered);
+        assert!(
+            agree([sum / covered, error], exact, 3.0),
+            "{ior} {sigma_t} {g}: {} ± {error}, {exact}",
+            sum / covered
+        );
         assert!(!agree([sum / covered, error], 1.2 * exact, 3.0), "a fifth more must be noticed");
     }
 }
@@ -228,7 +232,8 @@ fn lights_of_some_extent_agree() {
     let cap = |radiance| Light::Ambient { radiance: [radiance; 3], axis: UP, half_angle, shadow: true };
     let pixels = (0..24 * 12).map(|k| [f64::from(u8::from(k < 24 * 2)); 3]).collect();
     let map = Arc::new(EnvironmentMap::new(24, 12, pixels).expect("as many pixels as it says"));
-    let sphere = Light::Sphere { center: [0.0, far, 0.0], radius: 0.5 * far, radiance: [1.0; 3], shadow: true };
+    let sphere =
+        Light::Sphere { center: [0.0, far, 0.0], radius: 0.5 * far, radiance: [1.0; 3], shadow: true };
     let at = |lights: &[Light], ior: f64| {
         let medium = Volume { ior, ..medium };
         picture(&ball, medium, lights, camera([0.0, 20.0, 60.0], 0.1, 24), 64)
@@ -244,7 +249,10 @@ fn lights_of_some_extent_agree() {
         let [expected, error] = mean(&pictures[0], k);
         for other in &pictures[1..] {
             let [found, own] = mean(other, k);
-            assert!(agree([found, own.hypot(error)], expected, 3.5), "{k}: {found} ± {own}, {expected} ± {error}");
+            assert!(
+                agree([found, own.hypot(error)], expected, 3.5),
+                "{k}: {found} ± {own}, {expected} ± {error}"
+            );
         }
         let [found, own] = mean(&brighter, k);
         assert!(!agree([found, own.hypot(error)], expected, 3.5), "6 % must be noticed");
@@ -256,7 +264,8 @@ fn lights_of_some_extent_agree() {
 fn small_lights_are_points() {
     let ball = Ball { center: [0.0; 3], radius: 3.0 };
     let position = [30.0, 40.0, 0.0];
-    let point = |intensity: f64| Light::Point { position, intensity: [intensity; 3], shadow: true, region: None };
+    let point =
+        |intensity: f64| Light::Point { position, intensity: [intensity; 3], shadow: true, region: None };
     let area = PI * 0.04;
     let lights = [
         Light::Sphere { center: position, radius: 0.2, radiance: [1e4 / area; 3], shadow: true },
@@ -283,14 +292,18 @@ fn small_lights_are_points() {
     let [expected, error] = mean(&at(point(1e4)), 0);
     for light in lights {
         let [found, own] = mean(&at(light.clone()), 0);
-        assert!(agree([found, own.hypot(error)], expected, 3.5), "{light:?}: {found} ± {own}, {expected} ± {error}");
+        assert!(
+            agree([found, own.hypot(error)], expected, 3.5),
+            "{light:?}: {found} ± {own}, {expected} ± {error}"
+        );
     }
     let [found, own] = mean(&at(point(1.08e4)), 0);
     assert!(!agree([found, own.hypot(error)], expected, 3.5), "8 % must be noticed");
 }
 
 fn cube(low: [f64; 3], high: [f64; 3], first: u32) -> (Vec<[f64; 3]>, Vec<[u32; 3]>) {
-    let corner = |k: usize| std::array::from_fn(|axis| if k >> axis & 1 == 0 { low[axis] } else { high[axis] });
+    let corner =
+        |k: usize| std::array::from_fn(|axis| if k >> axis & 1 == 0 { low[axis] } else { high[axis] });
     let quads = [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
     let triangles = quads.into_iter().flat_map(|[a, b, c, d]| [[a, b, c], [a, c, d]]);
     ((0..8).map(corner).collect(), triangles.map(|t: [u32; 3]| t.map(|v| v + first)).collect())
@@ -309,11 +322,17 @@ fn light_leaves_and_enters_again() {
     let medium = volume([sigma_s; 3], [sigma_t - sigma_s; 3]);
     // Down onto a point 0.3 inside the first cube, behind 1 mm of the second one.
     let x: f64 = 0.7;
-    let eye = Camera { eye: [x, 1e5, 0.0], target: [x, 0.0, 0.0], up: [0.0, 0.0, -1.0], fov: 1e-9, width: 8, height: 8 };
-    let estimate = picture(&cubes, medium, &[sun([1.0, 0.0, 0.0])], eye, 64);
-    let through = |depth: f64| {
-        0.25 * sigma_s / sigma_t * (-sigma_t * depth).exp() * (1.0 - (-2.0 * sigma_t).exp())
+    let eye = Camera {
+        eye: [x, 1e5, 0.0],
+        target: [x, 0.0, 0.0],
+        up: [0.0, 0.0, -1.0],
+        fov: 1e-9,
+        width: 8,
+        height: 8,
     };
+    let estimate = picture(&cubes, medium, &[sun([1.0, 0.0, 0.0])], eye, 64);
+    let through =
+        |depth: f64| 0.25 * sigma_s / sigma_t * (-sigma_t * depth).exp() * (1.0 - (-2.0 * sigma_t).exp());
     let single = estimate.single.iter().map(|rgb| rgb[0]).sum::<f64>() / 64.0;
     // The sun's depth is the same all along the way of sight: all paths bring the same but for roulette, which sets in at depth 1.
     assert!((single / through(1.0 + 1.0 - x) - 1.0).abs() < 0.02, "{single} {}", through(2.0 - x));
@@ -341,16 +360,27 @@ fn mesh_is_the_shape_it_stands_for() {
         for k in 0..3 {
             let ([expected, error], [found, own]) = (mean(&exact, k), mean(&facets, k));
             // Inscribed facets are smaller by a few 1e-4.
-            assert!(agree([found, own.hypot(error)], expected, 3.5), "{ior} {k}: {found} {expected} ± {error}");
+            assert!(
+                agree([found, own.hypot(error)], expected, 3.5),
+                "{ior} {k}: {found} {expected} ± {error}"
+            );
             let [other, own] = mean(&larger, k);
-            assert!(!agree([other, own.hypot(error)], expected, 3.5), "{ior} {k}: {other} {expected} ± {error}");
+            assert!(
+                !agree([other, own.hypot(error)], expected, 3.5),
+                "{ior} {k}: {other} {expected} ± {error}"
+            );
         }
     }
 }
 
 fn lit_ball() -> (Ball, Volume, [Light; 1], Camera) {
     let medium = volume([0.8, 1.5, 1.5], [0.05, 0.05, 0.5]);
-    (Ball { center: [0.0; 3], radius: 3.0 }, medium, [sun([0.6, 0.8, 0.0])], camera([0.0, 20.0, 60.0], 0.12, 24))
+    (
+        Ball { center: [0.0; 3], radius: 3.0 },
+        medium,
+        [sun([0.6, 0.8, 0.0])],
+        camera([0.0, 20.0, 60.0], 0.12, 24),
+    )
 }
 
 /// Mean over pixels of (squared distance of two runs) over (sum of their squared errors): 1 where errors are honest.
@@ -360,7 +390,8 @@ fn honesty(runs: &[Estimate], gain: f64) -> f64 {
         for pixel in 0..pair[0].radiance.len() {
             for k in 0..3 {
                 let distance = pair[0].radiance[pixel][k] - pair[1].radiance[pixel][k];
-                let claimed = gain * gain * (pair[0].error[pixel][k].powi(2) + pair[1].error[pixel][k].powi(2));
+                let claimed =
+                    gain * gain * (pair[0].error[pixel][k].powi(2) + pair[1].error[pixel][k].powi(2));
                 if claimed > 0.0 {
                     (ratio, count) = (ratio + distance * distance / claimed, count + 1.0);
                 }
@@ -409,9 +440,8 @@ fn focus_lessens_noise_and_changes_nothing() {
         trace.estimate()
     };
     let (even, focused) = (run(false), run(true));
-    let paths = |estimate: &Estimate| {
-        estimate.samples.as_flattened().iter().map(|&n| f64::from(n)).sum::<f64>()
-    };
+    let paths =
+        |estimate: &Estimate| estimate.samples.as_flattened().iter().map(|&n| f64::from(n)).sum::<f64>();
     // The even run keeps its first 16 paths and looks beside the body too.
     assert!(paths(&focused) < 0.8 * paths(&even), "{} {}", paths(&focused), paths(&even));
     assert!(focused.noise() < 0.95 * even.noise(), "{} {}", focused.noise(), even.noise());
@@ -454,7 +484,11 @@ fn interrupted_pictures_are_valid() {
     }));
     assert_eq!(heard.len(), 1, "no more after the first no");
     let estimate = trace.estimate();
-    assert!(heard[0] < 64 * 64 && estimate.samples[heard[0] - 1] == [4; 3] && estimate.samples[heard[0]] == [2; 3]);
+    assert!(
+        heard[0] < 64 * 64
+            && estimate.samples[heard[0] - 1] == [4; 3]
+            && estimate.samples[heard[0]] == [2; 3]
+    );
     assert_eq!(estimate.radiance[heard[0]..], whole.radiance[heard[0]..]);
     assert_ne!(estimate.radiance[..heard[0]], whole.radiance[..heard[0]]);
 }
@@ -465,11 +499,17 @@ fn what_cannot_be_traced_is_refused() {
     let refused = |volume: Volume, lights: &[Light]| PathTracer::new(&ball, volume, lights).err();
     assert_eq!(refused(medium, &lights), None);
     let glass = Volume { ior: 1.3, ..medium };
-    assert_eq!(refused(glass, &[sky(), lights[0].clone()]), Some(PathError::Refracted { index: 1, ior: 1.3 }));
+    assert_eq!(
+        refused(glass, &[sky(), lights[0].clone()]),
+        Some(PathError::Refracted { index: 1, ior: 1.3 })
+    );
     assert_eq!(refused(glass, &[sky()]), None);
     let negative = Volume { sigma_a: [0.0, -1.0, 0.0], ..medium };
     assert!(matches!(refused(negative, &lights), Some(PathError::Volume { what: "sigma_a", .. })));
-    assert!(matches!(refused(Volume { g: 1.0, ..medium }, &lights), Some(PathError::Volume { what: "g", .. })));
+    assert!(matches!(
+        refused(Volume { g: 1.0, ..medium }, &lights),
+        Some(PathError::Volume { what: "g", .. })
+    ));
     let mut surface = octasphere(1.0, 1);
     surface.triangles.pop();
     let open = Surface::flat(surface.positions, surface.triangles);

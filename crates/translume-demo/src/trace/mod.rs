@@ -183,10 +183,7 @@ fn linear(path: &Path) -> Result<Output, Error> {
     if output.format == Format::Exr {
         return Ok(output);
     }
-    Err(Error::Output {
-        path: path.to_owned(),
-        problem: "numbers that are compared need an .exr".to_owned(),
-    })
+    Err(Error::Output { path: path.to_owned(), problem: "numbers that are compared need an .exr".to_owned() })
 }
 
 fn plain(estimate: &Estimate, values: &[[f64; 3]]) -> Picture {

@@ -42,8 +42,7 @@ impl Subject {
         let motion = Motion::new(&model, &wish, 1)?;
         let points = motion.points()?;
         let body = exact(&scene.shape, &wish, mm_per_unit).unwrap_or_else(|| {
-            let positions =
-                points.iter().map(|p| p.to_array().map(|x| f64::from(x) * mm_per_unit)).collect();
+            let positions = points.iter().map(|p| p.to_array().map(|x| f64::from(x) * mm_per_unit)).collect();
             let triangles = model.mesh.triangles.clone();
             Body::Mesh(if is_flat {
                 Surface::flat(positions, triangles)

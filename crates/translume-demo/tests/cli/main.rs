@@ -10,6 +10,7 @@ mod desk;
 mod environment;
 mod report;
 mod scatter;
+mod trace;
 
 use desk::{Desk, check_refusal, read_exr, refused, render, translume};
 use std::path::Path;

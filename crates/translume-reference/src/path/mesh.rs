@@ -144,10 +144,12 @@ impl Grid {
     /// (Rosenfeld and Pfaltz 1966).
     fn distances(&self, touched: &[bool]) -> Vec<i8> {
         let mut steps: Vec<i8> = touched.iter().map(|&touched| if touched { 0 } else { i8::MAX }).collect();
-        let neighbours: Vec<IVec3> = (0..13).map(|k| IVec3::new(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1)).collect();
+        let neighbours: Vec<IVec3> =
+            (0..13).map(|k| IVec3::new(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1)).collect();
         let cells: Vec<IVec3> = self.cells().collect();
         let mut relax = |cell: &IVec3, sign: i32| {
-            let near = neighbours.iter().map(|offset| *cell + *offset * sign).filter(|&other| self.holds(other));
+            let near =
+                neighbours.iter().map(|offset| *cell + *offset * sign).filter(|&other| self.holds(other));
             let least = near.map(|other| steps[self.index(other)]).min().unwrap_or(i8::MAX);
             let own = &mut steps[self.index(*cell)];
             *own = (*own).min(least.saturating_add(1));
@@ -253,7 +255,9 @@ mod tests {
         let shell = Closed::new(&surface).unwrap();
         let (origin, direction) = (DVec3::new(-5.0, 0.11, 0.13), DVec3::X);
         let mut found = Vec::new();
-        shell.crossings(origin, direction, &mut |crossing| found.push((crossing.t, crossing.leaves(direction))));
+        shell.crossings(origin, direction, &mut |crossing| {
+            found.push((crossing.t, crossing.leaves(direction)))
+        });
         found.sort_by(|a, b| a.0.total_cmp(&b.0));
         assert_eq!(found.iter().map(|crossing| crossing.1).collect::<Vec<_>>(), [false, true, false, true]);
         for (leaving, expected) in [(false, found[0].0), (true, found[1].0)] {

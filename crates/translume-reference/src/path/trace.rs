@@ -115,7 +115,8 @@ impl<'a> Trace<'a> {
         let mut shares = vec![[0.0; 3]; self.pixels.len()];
         for (index, group) in self.tracer.groups.iter().enumerate() {
             let variances = self.variances(group);
-            let spreads: Vec<f64> = (0..self.pixels.len()).map(|pixel| self.around(pixel, &variances).sqrt()).collect();
+            let spreads: Vec<f64> =
+                (0..self.pixels.len()).map(|pixel| self.around(pixel, &variances).sqrt()).collect();
             let sum: f64 = spreads.iter().sum();
             let reached = spreads.iter().filter(|&&spread| spread > 0.0).count();
             for (share, spread) in shares.iter_mut().zip(spreads).filter(|(_, spread)| *spread > 0.0) {
@@ -137,7 +138,8 @@ impl<'a> Trace<'a> {
         let channels = || (0..3).filter(|&k| group.albedo[k] > 0.0);
         let mean = |k: usize| {
             let touched = self.pixels.iter().filter(|sums| sums.met > 0);
-            let (sum, count) = touched.fold((0.0, 0), |(sum, n), sums| (sum + sums.mean(sums.radiance)[k], n + 1));
+            let (sum, count) =
+                touched.fold((0.0, 0), |(sum, n), sums| (sum + sums.mean(sums.radiance)[k], n + 1));
             sum / f64::from(count.max(1))
         };
         let means: [f64; 3] = std::array::from_fn(mean);
@@ -153,7 +155,9 @@ impl<'a> Trace<'a> {
         let range = |at: usize, end: usize| at.saturating_sub(REACH)..(at + REACH + 1).min(end);
         let (columns, rows) = (range(pixel % width, width), range(pixel / width, height));
         let count = (columns.len() * rows.len()) as f64;
-        let sum: f64 = rows.map(|row| values[row * width + columns.start..row * width + columns.end].iter().sum::<f64>()).sum();
+        let sum: f64 = rows
+            .map(|row| values[row * width + columns.start..row * width + columns.end].iter().sum::<f64>())
+            .sum();
         sum / count
     }
 
@@ -167,7 +171,11 @@ impl<'a> Trace<'a> {
             radiance: each(|sums| sums.mean(sums.radiance)),
             error: each(Sums::error),
             single: each(|sums| sums.mean(sums.single)),
-            coverage: self.pixels.iter().map(|sums| f64::from(sums.met) / f64::from(sums.paths.max(1))).collect(),
+            coverage: self
+                .pixels
+                .iter()
+                .map(|sums| f64::from(sums.met) / f64::from(sums.paths.max(1)))
+                .collect(),
             samples: self.pixels.iter().map(|sums| sums.count).collect(),
         }
     }

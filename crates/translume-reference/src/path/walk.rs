@@ -62,7 +62,11 @@ impl PathTracer<'_> {
             inside: 0.0,
             density: 0.0,
         };
-        if self.is_matched() { walk.collide_ahead() } else { walk.refract_in() }
+        if self.is_matched() {
+            walk.collide_ahead()
+        } else {
+            walk.refract_in()
+        }
         walk.harvest
     }
 }
@@ -94,7 +98,8 @@ impl Walk<'_> {
 
     /// Through a refracting boundary; what it mirrors is not part of the picture.
     fn refract_in(&mut self) {
-        let Some(crossing) = self.tracer.shape.first(self.origin, self.direction, false, f64::INFINITY) else {
+        let Some(crossing) = self.tracer.shape.first(self.origin, self.direction, false, f64::INFINITY)
+        else {
             return;
         };
         self.harvest.met = true;
@@ -177,7 +182,10 @@ impl Walk<'_> {
         let passes = transmittance(if is_inside { 1.0 / ior } else { ior }, cos);
         let is_kept = self.dice.roll() >= passes;
         if is_kept {
-            self.turn(self.at(), self.direction - crossing.normal * (2.0 * crossing.normal.dot(self.direction)));
+            self.turn(
+                self.at(),
+                self.direction - crossing.normal * (2.0 * crossing.normal.dot(self.direction)),
+            );
         } else {
             self.bend(self.at(), crossing.normal, !is_inside);
         }
@@ -309,9 +317,8 @@ fn inside(shape: &dyn Shape, origin: DVec3, aim: &Aim, lamp: &Lamp) -> Option<f6
         length += f64::from(balance) * aim.distance;
     }
     let at = origin + aim.direction * entry;
-    let is_dark = lamp
-        .region()
-        .is_some_and(|(low, high)| at.cmplt(low.into()).any() || at.cmpgt(high.into()).any());
+    let is_dark =
+        lamp.region().is_some_and(|(low, high)| at.cmplt(low.into()).any() || at.cmpgt(high.into()).any());
     (!is_dark).then_some(length.max(0.0))
 }
 
