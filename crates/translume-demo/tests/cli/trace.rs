@@ -101,8 +101,8 @@ fn glass_takes_light_from_the_sky() {
     let scene = desk.file("glass.json", scene(1.3, sky));
     let picture = trace(&desk, &scene, "a.exr", &["--samples", "16"]);
     let middle = picture[8 * 24 + 12];
-    // At most the share that enters and leaves again; four fifths of it are left by so little absorption.
-    assert!(middle.iter().all(|c| (0.7..0.99).contains(c)), "{middle:?}");
+    // What enters is 0.98, and of the channel that absorbs most two thirds come back.
+    assert!(middle.iter().all(|c| (0.6..0.97).contains(c)), "{middle:?}");
 }
 
 /// Five scenes with references by another program, in the folder that an environment variable names.

@@ -20,6 +20,7 @@ mod shape;
 mod trace;
 mod volume;
 mod walk;
+mod way;
 
 pub use mesh::Closed;
 pub use shape::{Ball, Block, Crossing, Shape};
@@ -55,7 +56,7 @@ pub enum PathError {
     },
     /// No path can meet a light without extent through a boundary that refracts.
     #[error(
-        "light {index} is a direction or a point, which no path can meet through a surface that refracts (index {ior}); \
+        "light {index} is a direction or a point, which no path can meet through a surface that refracts (index {ior:.3}); \
          give it an extent, as a sphere, a rectangle or a cone of the sky, or take an index of 1"
     )]
     Refracted {

@@ -3,9 +3,10 @@
 use glam::DVec3;
 
 use super::dice::Dice;
-use super::lamp::{Aim, Lamp};
+use super::lamp::Lamp;
 use super::volume::Group;
-use super::{Crossing, PathTracer, Shape};
+use super::way::{inside, segments, surely_inside};
+use super::{Crossing, PathTracer};
 use crate::fresnel::{refracted_cos, transmittance};
 use crate::rgb::accumulate;
 
@@ -14,9 +15,6 @@ const LIGHT: f64 = 0.3;
 
 /// Mean optical depth towards a light up to which a connection is surely made.
 const SURE: f64 = 1.0;
-
-/// How many points towards a light are asked for their distance to the boundary.
-const PROBES: u32 = 6;
 
 /// What one path brings.
 #[derive(Clone, Copy, Debug, Default)]
@@ -277,66 +275,4 @@ impl Walk<'_> {
             accumulate(&mut self.harvest.single, found, factor);
         }
     }
-}
-
-/// Parts of a ray from outside that are inside.
-fn segments(crossings: &[Crossing], direction: DVec3) -> Vec<[f64; 2]> {
-    let mut segments = Vec::new();
-    let mut since = None;
-    for crossing in crossings {
-        match (crossing.leaves(direction), since) {
-            (false, None) => since = Some(crossing.t),
-            (true, Some(from)) => {
-                segments.push([from, crossing.t]);
-                since = None;
-            }
-            _ => {}
-        }
-    }
-    segments
-}
-
-/// How much of the way to a light is inside, mm; `None` where its light does not enter. Every way out counts by its distance, every way
-/// in against it, so that the order does not matter.
-fn inside(shape: &dyn Shape, origin: DVec3, aim: &Aim, lamp: &Lamp) -> Option<f64> {
-    let (mut length, mut balance, mut entry) = (0.0, 1, 0.0f64);
-    shape.crossings(origin, aim.direction, &mut |crossing| {
-        if crossing.t > aim.distance {
-            return;
-        }
-        if crossing.leaves(aim.direction) {
-            length += crossing.t;
-            balance -= 1;
-            entry = entry.max(crossing.t);
-        } else {
-            length -= crossing.t;
-            balance += 1;
-        }
-    });
-    if balance > 0 && aim.distance.is_finite() {
-        length += f64::from(balance) * aim.distance;
-    }
-    let at = origin + aim.direction * entry;
-    let is_dark =
-        lamp.region().is_some_and(|(low, high)| at.cmplt(low.into()).any() || at.cmpgt(high.into()).any());
-    (!is_dark).then_some(length.max(0.0))
-}
-
-/// A lower bound of the same, from spheres around points of the way, a `step` apart or more, that the boundary does not reach into; it
-/// need not go on beyond `enough`.
-fn surely_inside(shape: &dyn Shape, origin: DVec3, aim: &Aim, [step, enough]: [f64; 2]) -> f64 {
-    let (mut length, mut end, mut t) = (0.0, 0.0, 0.0);
-    for _ in 0..PROBES {
-        let radius = shape.clearance(origin + aim.direction * t).max(0.0);
-        let (from, to) = ((t - radius).max(end), (t + radius).min(aim.distance));
-        if to > from {
-            length += to - from;
-            end = to;
-        }
-        t = (t + radius).max(end) + step.max(radius);
-        if length > enough || t >= aim.distance {
-            break;
-        }
-    }
-    length
 }
