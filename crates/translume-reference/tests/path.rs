@@ -452,6 +452,25 @@ fn focus_lessens_noise_and_changes_nothing() {
     }
 }
 
+/// Where one channel has no noise at all it still gets paths, and no pixel is left black.
+#[test]
+fn focus_leaves_nothing_black() {
+    let ball = Ball { center: [0.0; 3], radius: 10.0 };
+    let tracer = PathTracer::new(&ball, volume([0.1, 1.0, 6.0], [0.0; 3]), &[sky()]).expect("fine");
+    let mut trace = tracer.trace(camera([0.0, 0.0, 60.0], 0.4, 24), 1);
+    trace.pass(8, |_| true);
+    trace.focus();
+    trace.pass(2, |_| true);
+    let estimate = trace.estimate();
+    let inside: Vec<usize> = (0..24 * 24).filter(|&pixel| estimate.coverage[pixel] == 1.0).collect();
+    assert!(inside.len() > 200);
+    // The thinnest chords of the red channel let most light through; blue is opaque but for the last hundredth of a millimetre.
+    assert!(inside.iter().all(|&pixel| estimate.radiance[pixel].iter().all(|c| *c > 0.0)));
+    let white = inside.iter().filter(|&&pixel| estimate.radiance[pixel][2] > 0.999).count();
+    assert!(white > inside.len() * 9 / 10 && white <= inside.len(), "{white} of {}", inside.len());
+    assert!(estimate.samples.iter().any(|n| *n == [0; 3]), "beside the body no paths are needed");
+}
+
 #[test]
 fn runs_repeat_bit_for_bit_on_any_number_of_threads() {
     let (ball, medium, lights, eye) = lit_ball();

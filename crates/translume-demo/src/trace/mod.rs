@@ -61,8 +61,8 @@ pub fn trace(
     let start = Instant::now();
     let in_time = || limits.seconds.is_none_or(|seconds| start.elapsed().as_secs_f64() < seconds);
     if limits.noise.is_some() || limits.seconds.is_some() {
-        // A pilot that is cut short already used up the time: it is the picture.
-        if !trace.pass(PILOT, |_| in_time()) {
+        // A pilot that used up the time is the picture.
+        if !(0..PILOT).all(|_| trace.pass(1, |_| in_time())) {
             return Ok(trace.estimate());
         }
         trace.focus();
@@ -70,7 +70,8 @@ pub fn trace(
     let mut samples = 0;
     loop {
         let next = limits.samples.map_or(PASS, |most| PASS.min(most - samples));
-        let whole = trace.pass(next, |_| in_time());
+        // The first pass cannot be cut short, or pixels would have no path at all.
+        let whole = trace.pass(next, |_| samples == 0 || in_time());
         samples += next;
         let estimate = trace.estimate();
         let noise = estimate.noise();

@@ -256,7 +256,7 @@ mod tests {
         let (origin, direction) = (DVec3::new(-5.0, 0.11, 0.13), DVec3::X);
         let mut found = Vec::new();
         shell.crossings(origin, direction, &mut |crossing| {
-            found.push((crossing.t, crossing.leaves(direction)))
+            found.push((crossing.t, crossing.leaves(direction)));
         });
         found.sort_by(|a, b| a.0.total_cmp(&b.0));
         assert_eq!(found.iter().map(|crossing| crossing.1).collect::<Vec<_>>(), [false, true, false, true]);

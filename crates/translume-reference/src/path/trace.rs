@@ -15,7 +15,7 @@ const BATCH: usize = 2048;
 /// Neighbours on each side whose spread is averaged where [`Trace::focus`] looks: few paths alone know little of rare light.
 const REACH: usize = 2;
 
-/// Every pixel of the body gets at least this share of the paths of an average one.
+/// This share of the paths is spent evenly.
 const LEAST: f64 = 0.1;
 
 /// A picture under way.
@@ -99,6 +99,10 @@ impl<'a> Trace<'a> {
             let mut dice = Dice::new([self.seed, self.passes, pixel as u64, index as u64]);
             // A broken number of paths is rounded up as often as it is right on average.
             let count = (f64::from(samples) * f64::from(sums.share[index]) + dice.roll()) as u32;
+            // Whoever gets few at first must not be taken for black.
+            let is_new = sums.share[index] > 0.0
+                && sums.count.iter().zip(group.albedo).all(|(&n, a)| n == 0 || a == 0.0);
+            let count = if is_new { count.max(samples.min(2)) } else { count };
             for _ in 0..count {
                 let [x, y] = dice.pair();
                 let direction = self.camera.direction_at(column as f64 + x, row as f64 + y);
@@ -112,24 +116,26 @@ impl<'a> Trace<'a> {
     /// paths so that [`Estimate::noise`] falls fastest, as many in all as before. Because the choice is made once, from paths that do not
     /// count, no bias follows. A few dozen paths of each pixel are enough.
     pub fn focus(&mut self) {
-        let mut shares = vec![[0.0; 3]; self.pixels.len()];
+        let met: Vec<f64> = self.pixels.iter().map(|sums| f64::from(sums.met)).collect();
+        // A rim that the paths so far missed is not far from where they met the body.
+        let reached: Vec<bool> = (0..self.pixels.len()).map(|pixel| self.around(pixel, &met) > 0.0).collect();
+        let mut wanted = vec![[0.0; 3]; self.pixels.len()];
         for (index, group) in self.tracer.groups.iter().enumerate() {
             let variances = self.variances(group);
-            let spreads: Vec<f64> =
-                (0..self.pixels.len()).map(|pixel| self.around(pixel, &variances).sqrt()).collect();
+            let spread = |pixel: usize| self.around(pixel, &variances).sqrt();
+            let spreads: Vec<f64> = (0..self.pixels.len()).map(spread).collect();
             let sum: f64 = spreads.iter().sum();
-            let reached = spreads.iter().filter(|&&spread| spread > 0.0).count();
-            for (share, spread) in shares.iter_mut().zip(spreads).filter(|(_, spread)| *spread > 0.0) {
-                // Paths in proportion to the spread make the sum of squared errors least. It falls to the square of the sum of spreads
-                // over the number of paths, so a group needs as many as its sum to be as good as the others.
-                share[index] = (spread + LEAST * sum / reached as f64) * sum;
-            }
+            // Paths in proportion to the spread make the sum of squared errors least. It falls to the square of the sum of spreads over
+            // the number of paths, so a group needs as many as its sum to be as good as the others.
+            wanted.iter_mut().zip(spreads).for_each(|(wanted, spread)| wanted[index] = spread * sum);
         }
-        let total: f64 = shares.as_flattened().iter().sum();
-        if total > 0.0 {
-            let asked = shares.as_flattened().iter().filter(|&&share| share > 0.0).count() as f64;
-            let scaled = shares.into_iter().map(|share| share.map(|share| (share * asked / total) as f32));
-            self.pixels = scaled.map(Sums::new).collect();
+        let total: f64 = wanted.as_flattened().iter().sum();
+        let pixels = reached.iter().filter(|&&reached| reached).count();
+        let scale = (pixels * self.tracer.groups.len()) as f64 / total;
+        // Where nothing varies, every pixel is as good as another.
+        let share = |wanted: f64| if total > 0.0 { LEAST + (1.0 - LEAST) * wanted * scale } else { 1.0 };
+        for (sums, (wanted, reached)) in self.pixels.iter_mut().zip(wanted.into_iter().zip(reached)) {
+            *sums = Sums::new(wanted.map(|wanted| if reached { share(wanted) as f32 } else { 0.0 }));
         }
     }
 
