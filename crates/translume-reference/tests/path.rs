@@ -1,5 +1,7 @@
 //! Paths against closed forms and against themselves.
 
+#![allow(clippy::expect_used, reason = "a test may stop where it cannot go on, in its helpers too")]
+
 use std::f64::consts::PI;
 use std::sync::Arc;
 use translume_reference::composite::Camera;
@@ -130,7 +132,8 @@ fn half_space_returns_its_albedo() {
             let side = |k: u32| {
                 let mu = (f64::from(k) + 0.5) / 4.0;
                 let eye = [0.0, 100.0 * mu, 100.0 * (1.0 - mu * mu).sqrt()];
-                let ring = picture(&half_space(), medium, &[light.clone()], camera(eye, 1e-3, 8), 32);
+                let ring =
+                    picture(&half_space(), medium, std::slice::from_ref(&light), camera(eye, 1e-3, 8), 32);
                 mean(&ring, 0)[0] / form.radiance(mu_0, mu)
             };
             let ratio = (0..4).map(side).sum::<f64>() / 4.0;
@@ -468,7 +471,7 @@ fn focus_leaves_nothing_black() {
     assert!(inside.iter().all(|&pixel| estimate.radiance[pixel].iter().all(|c| *c > 0.0)));
     let white = inside.iter().filter(|&&pixel| estimate.radiance[pixel][2] > 0.999).count();
     assert!(white > inside.len() * 9 / 10 && white <= inside.len(), "{white} of {}", inside.len());
-    assert!(estimate.samples.iter().any(|n| *n == [0; 3]), "beside the body no paths are needed");
+    assert!(estimate.samples.contains(&[0; 3]), "beside the body no paths are needed");
 }
 
 #[test]
