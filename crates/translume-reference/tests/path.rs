@@ -337,7 +337,7 @@ fn light_leaves_and_enters_again() {
     let through =
         |depth: f64| 0.25 * sigma_s / sigma_t * (-sigma_t * depth).exp() * (1.0 - (-2.0 * sigma_t).exp());
     let single = estimate.single.iter().map(|rgb| rgb[0]).sum::<f64>() / 64.0;
-    // The sun's depth is the same all along the way of sight: all paths bring the same but for roulette, which sets in at depth 1.
+    // The sun's depth is the same all along the way of sight: all paths bring the same but for roulette.
     assert!((single / through(1.0 + 1.0 - x) - 1.0).abs() < 0.02, "{single} {}", through(2.0 - x));
     assert!((single / through(1.0 - x) - 1.0).abs() > 0.3, "the other cube must be noticed");
     assert!(mean(&estimate, 0)[0] > 1.05 * single, "there is more than single scattering");

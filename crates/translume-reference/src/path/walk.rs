@@ -13,9 +13,6 @@ use crate::rgb::accumulate;
 /// Roulette sets in where a path's weight falls below this.
 const LIGHT: f64 = 0.3;
 
-/// Mean optical depth towards a light up to which a connection is surely made.
-const SURE: f64 = 1.0;
-
 /// What one path brings.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Harvest {
@@ -248,8 +245,8 @@ impl Walk<'_> {
         };
         let (shape, sigma_t) = (self.tracer.shape, self.group.sigma_t);
         // Most connections have to cross too much of the body to matter. One is made with the probability that light gets through what
-        // is surely inside, or rather e times that.
-        let patience = SURE + self.dice.exponential();
+        // is surely inside, and not weakened by that again.
+        let patience = self.dice.exponential();
         let surely = sigma_t * surely_inside(shape, self.origin, &aim, [1.0, patience].map(|x| x / sigma_t));
         if surely > patience {
             return;
@@ -257,7 +254,7 @@ impl Walk<'_> {
         let Some(inside) = inside(shape, self.origin, &aim, lamp) else {
             return;
         };
-        let depth = sigma_t * inside - (surely - SURE).max(0.0);
+        let depth = sigma_t * inside - surely;
         let phase = self.tracer.volume.phase(self.direction.dot(aim.direction));
         let share = if aim.density.is_finite() {
             let met = phase * (-sigma_t * inside).exp();
