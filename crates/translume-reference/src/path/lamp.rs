@@ -188,7 +188,7 @@ fn towards(origin: DVec3, target: DVec3) -> Option<(DVec3, f64)> {
 }
 
 /// 1 − cos of the half angle under which a sphere is seen, without cancellation.
-fn opening(radius: f64, distance: f64) -> f64 {
+pub(super) fn opening(radius: f64, distance: f64) -> f64 {
     let square = (radius / distance).powi(2);
     square / (1.0 + (1.0 - square).sqrt())
 }

@@ -52,6 +52,15 @@ impl Shape for Closed<'_> {
     fn clearance(&self, point: DVec3) -> f64 {
         self.grid.clearance(point)
     }
+
+    fn extent(&self) -> [DVec3; 2] {
+        extent(self.surface)
+    }
+}
+
+fn extent(surface: &Surface) -> [DVec3; 2] {
+    let corners = || surface.positions.iter().map(|&p| DVec3::from(p));
+    [corners().fold(DVec3::INFINITY, DVec3::min), corners().fold(DVec3::NEG_INFINITY, DVec3::max)]
 }
 
 /// Directed edges that no triangle runs along in the other direction as often.
@@ -87,9 +96,7 @@ struct Grid {
 
 impl Grid {
     fn new(surface: &Surface) -> Self {
-        let corners = || surface.positions.iter().map(|&p| DVec3::from(p));
-        let low = corners().fold(DVec3::INFINITY, DVec3::min);
-        let high = corners().fold(DVec3::NEG_INFINITY, DVec3::max);
+        let [low, high] = extent(surface);
         let edge = (high - low).max_element() / CELLS;
         // One cell more on each side stays empty, so that the outside is connected.
         let low = low - 1.5 * edge;

@@ -14,8 +14,12 @@
 //! whatever normals they are shaded with, and lights stand outside the body.
 
 mod dice;
+mod emit;
+mod film;
+mod guide;
 mod lamp;
 mod mesh;
+mod photons;
 mod shape;
 mod trace;
 mod volume;
@@ -29,6 +33,7 @@ pub use volume::Volume;
 
 use crate::Light;
 use crate::composite::Camera;
+use emit::Bounds;
 use lamp::Lamp;
 use volume::Group;
 
@@ -73,6 +78,7 @@ pub struct PathTracer<'a> {
     volume: Volume,
     groups: Vec<Group>,
     lamps: Vec<Lamp>,
+    bounds: Bounds,
 }
 
 impl<'a> PathTracer<'a> {
@@ -89,7 +95,9 @@ impl<'a> PathTracer<'a> {
             Some(index) if volume.ior != 1.0 => Err(PathError::Refracted { index, ior: volume.ior }),
             _ => {
                 let lamps = lamps.into_iter().flatten().collect();
-                Ok(Self { shape, volume, groups: volume.groups(), lamps })
+                let [low, high] = shape.extent();
+                let bounds = Bounds { center: 0.5 * (low + high), radius: 0.5 * low.distance(high) };
+                Ok(Self { shape, volume, groups: volume.groups(), lamps, bounds })
             }
         }
     }

@@ -21,6 +21,9 @@ pub trait Shape: Sync {
 
     /// A lower bound of the distance to the boundary, mm, where the point is inside; 0 or less elsewhere, and negative only outside.
     fn clearance(&self, point: DVec3) -> f64;
+
+    /// Lowest and highest coordinates, mm.
+    fn extent(&self) -> [DVec3; 2];
 }
 
 impl Crossing {
@@ -70,6 +73,10 @@ impl Shape for Ball {
     fn clearance(&self, point: DVec3) -> f64 {
         self.radius - point.distance(self.center.into())
     }
+
+    fn extent(&self) -> [DVec3; 2] {
+        [-self.radius, self.radius].map(|offset| DVec3::from(self.center) + offset)
+    }
 }
 
 /// An exact box, its edges along the axes.
@@ -118,5 +125,9 @@ impl Shape for Block {
 
     fn clearance(&self, point: DVec3) -> f64 {
         (point - DVec3::from(self.low)).min(DVec3::from(self.high) - point).min_element()
+    }
+
+    fn extent(&self) -> [DVec3; 2] {
+        [self.low.into(), self.high.into()]
     }
 }

@@ -3,15 +3,21 @@
 use glam::DVec3;
 
 use super::dice::Dice;
+use super::emit::Ray;
+use super::film::Film;
 use super::lamp::Lamp;
 use super::volume::Group;
-use super::way::{inside, segments, surely_inside};
+use super::way::{Way, inside, is_lit, segments, surely_inside};
 use super::{Crossing, PathTracer};
 use crate::fresnel::{refracted_cos, transmittance};
+use crate::lights::Region;
 use crate::rgb::accumulate;
 
 /// Roulette sets in where a path's weight falls below this.
 const LIGHT: f64 = 0.3;
+
+/// Steps that take as long as a ray, roughly.
+const RAY: u64 = 8;
 
 /// What one path brings.
 #[derive(Clone, Copy, Debug, Default)]
@@ -21,6 +27,23 @@ pub(super) struct Harvest {
     pub single: [f64; 3],
     /// Whether the path met the body.
     pub met: bool,
+    /// What it took, in steps.
+    pub work: u64,
+}
+
+/// What a path of light brings to a pixel.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Splat {
+    pub pixel: usize,
+    pub radiance: [f64; 3],
+    /// The part that was scattered once.
+    pub single: [f64; 3],
+}
+
+/// What a path is connected to.
+enum Goal<'a> {
+    Lights,
+    Eye { film: &'a Film, region: Option<Region>, found: &'a mut Vec<Splat> },
 }
 
 /// A path under way.
@@ -28,9 +51,12 @@ struct Walk<'a> {
     tracer: &'a PathTracer<'a>,
     group: &'a Group,
     dice: &'a mut Dice,
+    goal: Goal<'a>,
     harvest: Harvest,
     /// In each channel; the light that the path will find counts by it.
     weight: [f64; 3],
+    /// What the path set out with.
+    start: [f64; 3],
     scatterings: u32,
     /// Where the last straight line began, and how far along it the path is, with how much of that inside.
     origin: DVec3,
@@ -44,15 +70,34 @@ struct Walk<'a> {
 impl PathTracer<'_> {
     /// Follows a path from the eye along a unit direction.
     pub(super) fn follow(&self, group: &Group, eye: DVec3, direction: DVec3, dice: &mut Dice) -> Harvest {
+        let ray = Ray { origin: eye, direction, power: [1.0; 3] };
+        self.walk(group, &ray, dice, Goal::Lights)
+    }
+
+    /// Follows light from its source through an index-matched boundary. It is `found` at every collision, in one pixel more than once;
+    /// returns what it took.
+    pub(super) fn shine(
+        &self,
+        group: &Group,
+        (ray, region): (&Ray, Option<Region>),
+        dice: &mut Dice,
+        (film, found): (&Film, &mut Vec<Splat>),
+    ) -> u64 {
+        self.walk(group, ray, dice, Goal::Eye { film, region, found }).work
+    }
+
+    fn walk(&self, group: &Group, ray: &Ray, dice: &mut Dice, goal: Goal<'_>) -> Harvest {
         let mut walk = Walk {
             tracer: self,
             group,
             dice,
+            goal,
             harvest: Harvest::default(),
             weight: group.albedo.map(|albedo| f64::from(u8::from(albedo > 0.0))),
+            start: ray.power,
             scatterings: 0,
-            origin: eye,
-            direction,
+            origin: ray.origin,
+            direction: ray.direction,
             travelled: 0.0,
             inside: 0.0,
             density: 0.0,
@@ -73,8 +118,14 @@ impl Walk<'_> {
         let mut crossings = Vec::new();
         self.tracer.shape.crossings(self.origin, self.direction, &mut |crossing| crossings.push(crossing));
         self.harvest.met = !crossings.is_empty();
+        self.harvest.work += RAY;
         crossings.sort_by(|a, b| a.t.total_cmp(&b.t));
         let segments = segments(&crossings, self.direction);
+        if let (Goal::Eye { region, .. }, Some([enter, _])) = (&self.goal, segments.first())
+            && !is_lit(*region, self.origin + self.direction * *enter)
+        {
+            return;
+        }
         let length: f64 = segments.iter().map(|[from, to]| to - from).sum();
         let probability = -(-self.group.sigma_t * length).exp_m1();
         if probability <= 0.0 {
@@ -115,6 +166,7 @@ impl Walk<'_> {
         loop {
             self.weight = std::array::from_fn(|k| self.weight[k] * self.group.albedo[k]);
             self.scatterings += 1;
+            self.harvest.work += 1;
             let heaviest = self.weight.into_iter().fold(0.0, f64::max);
             if heaviest < LIGHT {
                 if self.dice.roll() * LIGHT >= heaviest {
@@ -146,6 +198,7 @@ impl Walk<'_> {
                     self.place(self.travelled + left);
                     return true;
                 }
+                self.harvest.work += RAY;
                 let Some(crossing) = shape.first(at, self.direction, true, left) else {
                     self.place(self.travelled + left);
                     // Rounding can leave a path outside of a sharp edge, one in billions.
@@ -217,7 +270,7 @@ impl Walk<'_> {
     /// Light of some extent on the way ahead outside. Where it was also aimed at, both count by the balance heuristic (Veach and Guibas
     /// 1995), in whose terms a path got here with the density of its direction times the probability not to have collided.
     fn meet_lights(&mut self, free: f64) {
-        if self.scatterings == 0 {
+        if self.scatterings == 0 || matches!(self.goal, Goal::Eye { .. }) {
             return;
         }
         for lamp in &self.tracer.lamps {
@@ -232,8 +285,11 @@ impl Walk<'_> {
         }
     }
 
-    /// Straight connections to the lights, as an index-matched boundary bends none.
+    /// Straight connections, as an index-matched boundary bends none.
     fn connect(&mut self) {
+        if matches!(self.goal, Goal::Eye { .. }) {
+            return self.connect_to_eye();
+        }
         for lamp in self.tracer.lamps.iter().filter(|lamp| lamp.is_aimed_at()) {
             self.connect_to(lamp);
         }
@@ -243,33 +299,74 @@ impl Walk<'_> {
         let Some(aim) = lamp.aim(self.origin, self.dice) else {
             return;
         };
-        let (shape, sigma_t) = (self.tracer.shape, self.group.sigma_t);
-        // Most connections have to cross too much of the body to matter. One is made with the probability that light gets through what
-        // is surely inside, and not weakened by that again.
-        let patience = self.dice.exponential();
-        let surely = sigma_t * surely_inside(shape, self.origin, &aim, [1.0, patience].map(|x| x / sigma_t));
-        if surely > patience {
-            return;
-        }
-        let Some(inside) = inside(shape, self.origin, &aim, lamp) else {
+        let way = Way { origin: self.origin, direction: aim.direction, distance: aim.distance };
+        let Some(Passage { inside, last, share }) = self.pass(&way) else {
             return;
         };
-        let depth = sigma_t * inside - surely;
+        if !is_lit(lamp.region(), way.at(last)) {
+            return;
+        }
         let phase = self.tracer.volume.phase(self.direction.dot(aim.direction));
-        let share = if aim.density.is_finite() {
-            let met = phase * (-sigma_t * inside).exp();
+        let weight = if aim.density.is_finite() {
+            let met = phase * (-self.group.sigma_t * inside).exp();
             aim.density / (aim.density + met)
         } else {
             1.0
         };
-        self.reap(aim.light, share * phase * (-depth).exp());
+        self.reap(aim.light, weight * phase * share);
+    }
+
+    fn connect_to_eye(&mut self) {
+        let Goal::Eye { film, .. } = &self.goal else {
+            return;
+        };
+        let Some(view) = film.view(self.origin) else {
+            return;
+        };
+        let way = Way { origin: self.origin, direction: view.direction, distance: view.distance };
+        let Some(Passage { share, .. }) = self.pass(&way) else {
+            return;
+        };
+        let phase = self.tracer.volume.phase(self.direction.dot(view.direction));
+        let radiance = self.found([view.density; 3], phase * share);
+        let single = if self.scatterings == 1 { radiance } else { [0.0; 3] };
+        if let Goal::Eye { found, .. } = &mut self.goal {
+            found.push(Splat { pixel: view.pixel, radiance, single });
+        }
+    }
+
+    /// What light gets through. Most ways cross too much of the body to matter. One is followed with the probability that light gets through
+    /// what is surely inside, and not weakened by that again.
+    fn pass(&mut self, way: &Way) -> Option<Passage> {
+        let (shape, sigma_t) = (self.tracer.shape, self.group.sigma_t);
+        let patience = self.dice.exponential();
+        let surely = sigma_t * surely_inside(shape, way, [1.0, patience].map(|x| x / sigma_t));
+        if surely > patience {
+            return None;
+        }
+        self.harvest.work += RAY;
+        let [inside, last] = inside(shape, way);
+        Some(Passage { inside, last, share: (surely - sigma_t * inside).exp() })
     }
 
     fn reap(&mut self, light: [f64; 3], factor: f64) {
-        let found = std::array::from_fn(|k| self.weight[k] * light[k]);
-        accumulate(&mut self.harvest.radiance, found, factor);
+        let found = self.found(light, factor);
+        accumulate(&mut self.harvest.radiance, found, 1.0);
         if self.scatterings == 1 {
-            accumulate(&mut self.harvest.single, found, factor);
+            accumulate(&mut self.harvest.single, found, 1.0);
         }
     }
+
+    fn found(&self, light: [f64; 3], factor: f64) -> [f64; 3] {
+        std::array::from_fn(|k| self.start[k] * self.weight[k] * light[k] * factor)
+    }
+}
+
+/// A way that was followed.
+struct Passage {
+    /// How much of it is inside, and how far away the last of it is, mm.
+    inside: f64,
+    last: f64,
+    /// What gets through, over the probability to be followed.
+    share: f64,
 }

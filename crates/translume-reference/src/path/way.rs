@@ -2,10 +2,10 @@
 
 use glam::DVec3;
 
-use super::lamp::{Aim, Lamp};
 use super::{Crossing, Shape};
+use crate::lights::Region;
 
-/// How many points towards a light are asked for their distance to the boundary.
+/// How many points of a way are asked for their distance to the boundary.
 const PROBES: u32 = 6;
 
 /// Parts of a ray from outside that are inside.
@@ -25,49 +25,67 @@ pub(super) fn segments(crossings: &[Crossing], direction: DVec3) -> Vec<[f64; 2]
     segments
 }
 
-/// How much of the way to a light is inside, mm; `None` where its light does not enter. Every way out counts by its distance, every way
-/// in against it, so that the order does not matter.
-pub(super) fn inside(shape: &dyn Shape, origin: DVec3, aim: &Aim, lamp: &Lamp) -> Option<f64> {
-    let (mut length, mut balance, mut entry) = (0.0, 1, 0.0f64);
-    shape.crossings(origin, aim.direction, &mut |crossing| {
-        if crossing.t > aim.distance {
+/// A straight way from a point of the body to one outside.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Way {
+    pub origin: DVec3,
+    /// Unit vector.
+    pub direction: DVec3,
+    /// mm; infinite for a light that is a direction.
+    pub distance: f64,
+}
+
+/// How much of a way is inside, mm, and how far away the last of it is. Every way out counts by its distance, every way in against it, so
+/// that the order does not matter.
+pub(super) fn inside(shape: &dyn Shape, way: &Way) -> [f64; 2] {
+    let (mut length, mut balance, mut last) = (0.0, 1, 0.0f64);
+    shape.crossings(way.origin, way.direction, &mut |crossing| {
+        if crossing.t > way.distance {
             return;
         }
-        if crossing.leaves(aim.direction) {
+        if crossing.leaves(way.direction) {
             length += crossing.t;
             balance -= 1;
-            entry = entry.max(crossing.t);
+            last = last.max(crossing.t);
         } else {
             length -= crossing.t;
             balance += 1;
         }
     });
-    if balance > 0 && aim.distance.is_finite() {
-        length += f64::from(balance) * aim.distance;
+    if balance > 0 && way.distance.is_finite() {
+        length += f64::from(balance) * way.distance;
     }
-    let at = origin + aim.direction * entry;
-    let is_dark =
-        lamp.region().is_some_and(|(low, high)| at.cmplt(low.into()).any() || at.cmpgt(high.into()).any());
-    (!is_dark).then_some(length.max(0.0))
+    [length.max(0.0), last]
 }
 
 /// A lower bound of the same, from spheres around points of the way, a `step` apart or more, that the boundary does not reach into; it
 /// need not go on beyond `enough`.
-pub(super) fn surely_inside(shape: &dyn Shape, origin: DVec3, aim: &Aim, [step, enough]: [f64; 2]) -> f64 {
+pub(super) fn surely_inside(shape: &dyn Shape, way: &Way, [step, enough]: [f64; 2]) -> f64 {
     let (mut length, mut end, mut t) = (0.0, 0.0, 0.0);
     for _ in 0..PROBES {
-        let radius = shape.clearance(origin + aim.direction * t).max(0.0);
-        let (from, to) = ((t - radius).max(end), (t + radius).min(aim.distance));
+        let radius = shape.clearance(way.at(t)).max(0.0);
+        let (from, to) = ((t - radius).max(end), (t + radius).min(way.distance));
         if to > from {
             length += to - from;
             end = to;
         }
         t = (t + radius).max(end) + step.max(radius);
-        if length > enough || t >= aim.distance {
+        if length > enough || t >= way.distance {
             break;
         }
     }
     length
+}
+
+/// Whether light enters at a point.
+pub(super) fn is_lit(region: Option<Region>, at: DVec3) -> bool {
+    region.is_none_or(|(low, high)| at.cmpge(low.into()).all() && at.cmple(high.into()).all())
+}
+
+impl Way {
+    pub fn at(&self, t: f64) -> DVec3 {
+        self.origin + self.direction * t
+    }
 }
 
 #[cfg(test)]
@@ -75,12 +93,11 @@ mod tests {
     use super::super::dice::Dice;
     use super::super::{Ball, Closed};
     use super::*;
+    use crate::Surface;
     use crate::testing::octasphere;
-    use crate::{Light, Surface};
 
-    fn sun(region: Option<([f64; 3], [f64; 3])>) -> Lamp {
-        let (to_light, irradiance) = ([0.0, 1.0, 0.0], [1.0; 3]);
-        Lamp::new(&Light::Directional { to_light, irradiance, shadow: true, region }).unwrap()
+    fn up(origin: DVec3) -> Way {
+        Way { origin, direction: DVec3::Y, distance: f64::INFINITY }
     }
 
     /// The bound stays below the way inside, and is a good part of it where that is long.
@@ -89,19 +106,18 @@ mod tests {
         let (positions, triangles) = octasphere(5.0, 5);
         let surface = Surface::flat(positions, triangles);
         let mesh = Closed::new(&surface).unwrap();
-        let (lamp, mut dice) = (sun(None), Dice::new([1; 4]));
+        let mut dice = Dice::new([1; 4]);
         let (mut bounds, mut lengths) = (0.0, 0.0);
         for _ in 0..2000 {
             let point = DVec3::new(dice.roll(), dice.roll(), dice.roll()) * 10.0 - 5.0;
             if point.length() > 4.9 {
                 continue;
             }
-            let aim = lamp.aim(point, &mut dice).unwrap();
-            let exact = inside(&Ball { center: [0.0; 3], radius: 5.0 }, point, &aim, &lamp).unwrap();
-            let length = inside(&mesh, point, &aim, &lamp).unwrap();
+            let [exact, _] = inside(&Ball { center: [0.0; 3], radius: 5.0 }, &up(point));
+            let [length, _] = inside(&mesh, &up(point));
             // Facets of level 5 lie within 0.06 % of the radius; along the surface that is more.
             assert!((length - exact).abs() < 0.05, "{length} {exact}");
-            let bound = surely_inside(&mesh, point, &aim, [0.5, f64::INFINITY]);
+            let bound = surely_inside(&mesh, &up(point), [0.5, f64::INFINITY]);
             assert!(bound <= length, "{bound} {length}");
             (bounds, lengths) = (bounds + bound, lengths + length);
         }
@@ -111,10 +127,11 @@ mod tests {
     #[test]
     fn light_enters_its_region_alone() {
         let ball = Ball { center: [0.0; 3], radius: 5.0 };
-        let lamp = sun(Some(([0.0, 0.0, -9.0], [9.0; 3])));
+        let region = Some(([0.0, 0.0, -9.0], [9.0; 3]));
         let way = |x: f64| {
-            let point = DVec3::new(x, -1.0, 0.0);
-            inside(&ball, point, &lamp.aim(point, &mut Dice::new([0; 4])).unwrap(), &lamp)
+            let way = up(DVec3::new(x, -1.0, 0.0));
+            let [length, last] = inside(&ball, &way);
+            is_lit(region, way.at(last)).then_some(length)
         };
         assert!((way(3.0).unwrap() - 5.0).abs() < 1e-12);
         assert_eq!(way(-3.0), None);
