@@ -9,10 +9,10 @@ use crate::lights::density::{pick, running};
 use crate::rgb::{accumulate, mean, scale};
 
 /// Cells along each side of a light's square.
-const SIDE: usize = 32;
+const SIDE: usize = 64;
 
 /// Cells on each side that share what they know.
-const REACH: usize = 2;
+const REACH: usize = 1;
 
 /// This share of the light's paths starts as if nothing was known.
 const LEAST: f64 = 0.1;

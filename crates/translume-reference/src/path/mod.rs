@@ -16,6 +16,7 @@
 mod dice;
 mod emit;
 mod film;
+mod grid;
 mod guide;
 mod lamp;
 mod mesh;

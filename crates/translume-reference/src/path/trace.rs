@@ -165,6 +165,13 @@ impl<'a> Trace<'a> {
             // the number of paths, so a group needs as many as its sum to be as good as the others.
             let sum: f64 = spreads.iter().sum();
             let cost = sum * sum * self.steps(index);
+            if let Some((_, [q, st])) = &light {
+                eprintln!(
+                    "group {index}: light {q:.1} x {st:.1}; eye {:.1} x {:.1}",
+                    sum * sum,
+                    self.steps(index)
+                );
+            }
             match light.filter(|(_, [squares, steps])| squares * steps < cost) {
                 Some((light, [squares, _])) => lights.push((light, squares)),
                 None => {
