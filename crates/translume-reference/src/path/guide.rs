@@ -29,6 +29,7 @@ pub(super) struct Guide {
 /// What came of each cell.
 pub(super) struct Yield {
     paths: Vec<f64>,
+    steps: Vec<f64>,
     squares: Vec<[f64; 3]>,
 }
 
@@ -56,7 +57,8 @@ impl Guide {
     }
 
     pub fn nothing(&self) -> Yield {
-        Yield { paths: vec![0.0; self.shares.len()], squares: vec![[0.0; 3]; self.shares.len()] }
+        let none = vec![0.0; self.shares.len()];
+        Yield { paths: none.clone(), steps: none, squares: vec![[0.0; 3]; self.shares.len()] }
     }
 
     /// A ray, and the cell it is from.
@@ -75,30 +77,38 @@ impl Guide {
         cell / (SIDE * SIDE)
     }
 
-    /// The guide under which squares, over those of the channels' means, have the least sum; and what the sum then is for each path.
-    pub fn learned(&self, found: &Yield, means: [f64; 3]) -> (Self, f64) {
+    /// The guide under which squares, over those of the channels' means, have the least sum after as many steps; and under it that sum and
+    /// the steps, for each path.
+    pub fn learned(&self, found: &Yield, means: [f64; 3]) -> (Self, [f64; 2]) {
         let relative = |squares: &[f64; 3]| {
             (0..3).filter(|&k| means[k] > 0.0).map(|k| squares[k] / means[k].powi(2)).sum::<f64>()
         };
         let squares: Vec<f64> = found.squares.iter().map(relative).collect();
-        let wanted: Vec<f64> = (0..self.shares.len())
-            .map(|cell| {
-                let [paths, squares] = [&found.paths, &squares].map(|values| around(values, cell));
-                self.shares[cell] * (squares / paths.max(1.0)).sqrt()
-            })
-            .collect();
+        let cells = 0..self.shares.len();
+        let [squares, steps] = [&squares, &found.steps].map(|values| -> Vec<f64> {
+            let mean = |cell| around(values, cell) / around(&found.paths, cell).max(1.0);
+            cells.clone().map(mean).collect()
+        });
+        let wanted = |cell: usize| self.shares[cell] * (squares[cell] / steps[cell].max(1.0)).sqrt();
+        let wanted: Vec<f64> = cells.clone().map(wanted).collect();
         let sum: f64 = wanted.iter().sum();
-        let mixed = |(share, wanted): (&f64, f64)| {
-            if sum > 0.0 { LEAST * share + (1.0 - LEAST) * wanted / sum } else { *share }
+        let mixed = |cell: usize| {
+            let share = self.shares[cell];
+            if sum > 0.0 { LEAST * share + (1.0 - LEAST) * wanted[cell] / sum } else { share }
         };
-        (Self::from_shares(self.shares.iter().zip(wanted).map(mixed).collect()), sum * sum)
+        let guide = Self::from_shares(cells.clone().map(mixed).collect());
+        let weighted = |cell: usize| self.shares[cell].powi(2) / guide.shares[cell] * squares[cell];
+        let path =
+            [cells.clone().map(weighted).sum(), cells.map(|cell| guide.shares[cell] * steps[cell]).sum()];
+        (guide, path)
     }
 }
 
 impl Yield {
-    /// Counts a path of a cell and what it brought.
-    pub fn add(&mut self, cell: usize, splats: &[Splat]) {
+    /// Counts a path of a cell, its steps and what it brought.
+    pub fn add(&mut self, cell: usize, steps: u64, splats: &[Splat]) {
         self.paths[cell] += 1.0;
+        self.steps[cell] += steps as f64;
         for splat in splats {
             let squares = splat.radiance.map(|radiance| radiance * radiance);
             accumulate(&mut self.squares[cell], squares, 1.0);

@@ -29,7 +29,7 @@ mod way;
 
 pub use mesh::Closed;
 pub use shape::{Ball, Block, Crossing, Shape};
-pub use trace::{Estimate, Progress, Trace};
+pub use trace::{Estimate, Progress, Source, Trace};
 pub use volume::Volume;
 
 use crate::Light;

@@ -43,9 +43,14 @@ struct Sums {
 /// What a path of light brought, pixel by pixel.
 struct Part {
     splats: Vec<Splat>,
-    /// Cell of the guide and end in the list of splats, for each path.
-    paths: Vec<(usize, usize)>,
-    work: u64,
+    paths: Vec<Path>,
+}
+
+/// A path's cell of the guide, its steps, and the end of its splats in the list of all.
+struct Path {
+    cell: usize,
+    steps: u64,
+    end: usize,
 }
 
 impl Photons {
@@ -54,12 +59,12 @@ impl Photons {
         Self { group, guide, era: 0, share: 0.0, count: 0, work: 0, pixels: vec![Sums::default(); pixels] }
     }
 
-    /// Follows more light; `found` hears of every path's cell and what it brought to each pixel.
+    /// Follows more light; `found` hears of every path's cell, its steps and what it brought to each pixel.
     pub fn add(
         &mut self,
         tracer: &PathTracer<'_>,
         (film, seed, count): (&Film, u64, u64),
-        mut found: impl FnMut(usize, &[Splat]),
+        mut found: impl FnMut(usize, u64, &[Splat]),
     ) {
         let ends = |part: u64| [part * PART, ((part + 1) * PART).min(count)].map(|end| self.count + end);
         let follow = |part: u64| {
@@ -69,27 +74,27 @@ impl Photons {
         let parts: Vec<Part> = (0..count.div_ceil(PART)).into_par_iter().map(follow).collect();
         self.count += count;
         for part in parts {
-            self.work += part.work;
             part.splats.iter().for_each(|splat| self.pixels[splat.pixel].add(splat));
             let mut start = 0;
-            for (cell, end) in part.paths {
-                found(cell, &part.splats[start..end]);
+            for Path { cell, steps, end } in part.paths {
+                self.work += steps;
+                found(cell, steps, &part.splats[start..end]);
                 start = end;
             }
         }
     }
 
     fn part(&self, tracer: &PathTracer<'_>, film: &Film, seed: u64, paths: std::ops::Range<u64>) -> Part {
-        let mut part = Part { splats: Vec::new(), paths: Vec::new(), work: 0 };
+        let mut part = Part { splats: Vec::new(), paths: Vec::new() };
         let mut found = Vec::new();
         for path in paths {
             let mut dice = Dice::new([seed, STREAM - self.era, path, self.group as u64]);
             let (ray, cell) = self.guide.emit(tracer, &mut dice);
             let region = tracer.lamps[Guide::lamp(cell)].region();
             let group = &tracer.groups[self.group];
-            part.work += tracer.shine(group, (&ray, region), &mut dice, (film, &mut found));
+            let steps = tracer.shine(group, (&ray, region), &mut dice, (film, &mut found));
             merge(&mut found, &mut part.splats);
-            part.paths.push((cell, part.splats.len()));
+            part.paths.push(Path { cell, steps, end: part.splats.len() });
         }
         part
     }
@@ -106,18 +111,17 @@ impl Photons {
     ) -> [f64; 2] {
         let mut found = self.guide.nothing();
         while self.work < work && self.count < work {
-            self.add(tracer, (film, seed, BATCH), |cell, splats| found.add(cell, splats));
+            self.add(tracer, (film, seed, BATCH), |cell, steps, splats| found.add(cell, steps, splats));
         }
-        let count = self.count as f64;
+        let count = self.count.max(1) as f64;
         for (k, mean) in means.iter_mut().enumerate() {
             let sum: f64 = self.pixels.iter().map(|sums| sums.radiance[k]).sum();
             *mean = mean.max(sum / count);
         }
-        let (guide, squares) = self.guide.learned(&found, *means);
-        let steps = self.work as f64 / count;
+        let (guide, path) = self.guide.learned(&found, *means);
         self.pixels.fill(Sums::default());
         (self.guide, self.era, self.count, self.work) = (guide, self.era + 1, 0, 0);
-        [squares, steps]
+        path
     }
 
     /// Radiance, its standard error and single scattering of a pixel; 0 in other groups' channels.
