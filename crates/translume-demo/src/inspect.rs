@@ -155,6 +155,7 @@ const TABLE_HEAD: &str = "\
 
 fn repairs(repairs: &RepairReport) -> Value {
     json!({
+        "turned_edges": repairs.turned_edges,
         "dropped_degenerate": repairs.dropped_degenerate,
         "dropped_duplicate": repairs.dropped_duplicate,
         "dropped_vertices": repairs.dropped_vertices,

@@ -1,5 +1,6 @@
 //! Makes a mesh clean, or says why it cannot be: mends what has one right answer, drops what cannot carry light, and counts both.
 
+mod caps;
 pub(crate) mod check;
 mod cover;
 pub(crate) mod edges;
@@ -10,8 +11,6 @@ mod orient;
 mod patch;
 mod report;
 mod vertices;
-
-use glam::DVec3;
 
 pub use error::RepairError;
 pub use holes::fill_holes;
@@ -61,7 +60,9 @@ pub fn repair(mesh: Mesh) -> Result<(Mesh, RepairReport), RepairError> {
 
 /// Makes a mesh clean: see [`Mesh`]. The order of what remains is kept, new vertices and triangles follow after it.
 ///
-/// Always: triangles without an area, repeated triangles and unused vertices are dropped; normals that are missing, zero
+/// Always: a triangle whose corners lie on a line gives the middle one to the neighbour across its longest edge, by turning that edge,
+/// so that the surface stays closed; triangles without an area where that cannot be, repeated triangles and unused vertices are
+/// dropped; normals that are missing, zero
 /// or not finite are computed ([`smooth_normals`](crate::normals::smooth_normals)), the others are brought to unit length.
 /// A triangle that repeats another from the other side makes a sheet with two sides and stays.
 ///
@@ -81,7 +82,9 @@ pub fn repair_with(mut mesh: Mesh, options: &RepairOptions) -> Result<(Mesh, Rep
     if let Some(share) = options.weld_distance {
         snap(&mut mesh, share)?;
     }
-    report.dropped_degenerate = drop_flat(&mut mesh);
+    let min_height = MIN_HEIGHT * f64::from(mesh.diagonal());
+    report.turned_edges = caps::turn_edges(&mut mesh, min_height);
+    report.dropped_degenerate = drop_flat(&mut mesh, min_height);
     if mesh.triangles.is_empty() {
         return Err(RepairError::NoArea { mesh: mesh.name, triangles: report.dropped_degenerate });
     }
@@ -113,11 +116,8 @@ fn snap(mesh: &mut Mesh, share: f32) -> Result<(), RepairError> {
     Ok(())
 }
 
-fn drop_flat(mesh: &mut Mesh) -> usize {
-    let min_height = MIN_HEIGHT * f64::from(mesh.diagonal());
-    let has_area =
-        |t: usize| cover::height(mesh.corners(t).map(|p| DVec3::from(p.map(f64::from)))) > min_height;
-    let kept: Vec<bool> = (0..mesh.triangles.len()).map(has_area).collect();
+fn drop_flat(mesh: &mut Mesh, min_height: f64) -> usize {
+    let kept: Vec<bool> = (0..mesh.triangles.len()).map(|t| !caps::is_flat(mesh, t, min_height)).collect();
     keep_triangles(mesh, &kept)
 }
 

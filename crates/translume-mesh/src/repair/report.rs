@@ -6,6 +6,8 @@ use std::fmt;
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct RepairReport {
+    /// Edges turned so that a triangle without an area got one.
+    pub turned_edges: usize,
     /// Triangles without an area, dropped.
     pub dropped_degenerate: usize,
     /// Repeated triangles (same three positions, same side), dropped.
@@ -41,6 +43,7 @@ impl RepairReport {
 impl fmt::Display for RepairReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let counts = [
+            (self.turned_edges, "edges turned to give triangles an area"),
             (self.dropped_degenerate, "triangles without area dropped"),
             (self.dropped_duplicate, "repeated triangles dropped"),
             (self.dropped_vertices, "unused vertices dropped"),

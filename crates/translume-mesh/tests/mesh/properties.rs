@@ -54,6 +54,7 @@ proptest! {
             prop_assert!((a - b).abs() < 2e-7);
         }
         let changes = [
+            second.turned_edges,
             second.dropped_degenerate,
             second.dropped_duplicate,
             second.dropped_vertices,
@@ -61,7 +62,7 @@ proptest! {
             second.flipped_triangles,
             second.filled_holes,
         ];
-        prop_assert_eq!(changes, [0; 6], "{}; then {}", first, second);
+        prop_assert_eq!(changes, [0; 7], "{}; then {}", first, second);
         let edges = |r: &translume_mesh::RepairReport| (r.boundary_edges, r.non_manifold_edges, r.inconsistent_edges);
         prop_assert_eq!(edges(&first), edges(&second));
     }

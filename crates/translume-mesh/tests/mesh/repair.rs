@@ -45,6 +45,38 @@ fn what_cannot_carry_light_is_dropped_and_counted() {
 }
 
 #[test]
+fn a_corner_on_an_edge_leaves_no_slit() {
+    // The middle of an edge of a cube, in a triangle between the edge and one of its two neighbours.
+    let mut mesh = cube();
+    let [a, b, c] = mesh.triangles[0];
+    let middle = |k: usize| 0.5 * (mesh.positions[a as usize][k] + mesh.positions[b as usize][k]);
+    mesh.positions.push([0, 1, 2].map(middle));
+    mesh.triangles.splice(0..1, [[a, 8, c], [8, b, c], [8, a, b]]);
+    let repaired = |mesh: &Mesh| repair(mesh.clone()).unwrap();
+    let (mended, report) = repaired(&mesh);
+    assert_eq!(
+        (report.turned_edges, report.dropped_degenerate, report.boundary_edges),
+        (1, 0, 0),
+        "{report}"
+    );
+    assert_eq!((mended.triangles.len(), mended.positions.len()), (14, 9));
+    // With the edge in a seam of the texture nobody knows the neighbour's coordinates in the middle.
+    mesh.uvs = vec![[[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]; 14];
+    let (_, report) = repaired(&mesh);
+    assert_eq!(
+        (report.turned_edges, report.dropped_degenerate, report.boundary_edges),
+        (0, 1, 3),
+        "{report}"
+    );
+    // Without a seam they are those of the flat triangle.
+    let at = |mesh: &Mesh, t: usize| mesh.triangles[t].map(|v| [0, 1].map(|k| mesh.positions[v as usize][k]));
+    mesh.uvs = (0..14).map(|t| at(&mesh, t)).collect();
+    let (mended, report) = repaired(&mesh);
+    assert_eq!((report.turned_edges, report.boundary_edges), (1, 0), "{report}");
+    assert_eq!(mended.uvs, (0..14).map(|t| at(&mended, t)).collect::<Vec<_>>());
+}
+
+#[test]
 fn vertices_keep_their_data_when_others_go() {
     let mut mesh = tetrahedron();
     mesh.positions.insert(1, [f32::INFINITY; 3]);
