@@ -68,6 +68,8 @@ fn is_facing(first: u32, count: u32) -> bool {
     if (need.kind & FACING) == 0u { return true; }
     var sum = vec3f(0.0);
     for (var k = 0u; k < count; k++) { sum += texel_normals[first + k].xyz; }
+    // Both sides of a sheet in one group.
+    if !(dot(sum, sum) > 0.25) { return true; }
     let mean = normalize(sum);
     var least = 1.0;
     var leaning = 1.0;

@@ -6,6 +6,7 @@ use crate::progress;
 use glam::{Mat4, Vec3};
 use std::f32::consts::FRAC_PI_2;
 use std::path::Path;
+use translume_mesh::repair::{RepairOptions, repair_with};
 use translume_mesh::rig::{self, Animation, Pose, Rig};
 use translume_mesh::spherical::{EggOptions, to_egg};
 use translume_mesh::{Atlas, AtlasOptions, ChartSource, Mesh, RepairReport, builtin, load};
@@ -69,6 +70,16 @@ impl Model {
             figures.flipped
         ));
         Ok(Self::new(laid.mesh, self.repairs, None))
+    }
+
+    /// The model with its holes of up to so many edges closed.
+    pub fn closed(self, max_edges: Option<usize>) -> Result<Self, Error> {
+        if max_edges.is_none() {
+            return Ok(self);
+        }
+        let options = RepairOptions { fill_holes: max_edges, ..RepairOptions::default() };
+        let (mesh, repairs) = repair_with(self.mesh, &options)?;
+        Ok(Self { mesh, repairs, ..self })
     }
 
     /// Numbers and names of the animations, to choose from.

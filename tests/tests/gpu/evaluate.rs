@@ -5,7 +5,8 @@ use translume::{DirectionalLight, Error, Evaluate, Frame, Light, Medium, Method,
 use translume_reference::gather::Source;
 use translume_reference::scatter;
 use translume_tests::{
-    Check, Fixture, Model, Pose, Shot, at_least, at_most, creature, dipoles, gpu, holds, limb, notices, plane,
+    Check, Fixture, Model, Pose, Shot, at_least, at_most, creature, cuboids, dipoles, gpu, holds, limb,
+    notices, plane,
 };
 
 const SHOT: Shot = Shot { eye: [80.0, 90.0, 240.0], target: [0.0, 48.0, 0.0], fov: 0.45, size: 96 };
@@ -147,6 +148,29 @@ fn what_a_view_needs_is_there_and_the_rest_is_not() {
     notices(partial(&creature(), Evaluate::PerTexel, elsewhere).map(|_| ()));
     // Fragments that were not expected take longer, but are right.
     holds(partial(&creature(), Evaluate::PerFragment, elsewhere).map(|_| ()));
+}
+
+/// Texels of both sides of a sheet lie in one group, whose normals cancel.
+#[test]
+fn a_sheet_is_seen_whole() {
+    let sheet = cuboids(&[([-45.0, 3.0, -0.3], [45.0, 93.0, 0.3])]);
+    let shown = |view: Option<View>| {
+        let mut fixture = body(&sheet, Medium::SKIMMILK, Evaluate::PerTexel, 32);
+        run(&mut fixture, view);
+        SHOT.take(&fixture)
+    };
+    let whole = shown(None);
+    let darkest = |picture: &[[f32; 4]]| {
+        let lit = whole.iter().zip(picture).filter(|(whole, _)| whole[3] > 0.0);
+        lit.map(|(whole, pixel)| f64::from(pixel[0] / whole[0])).fold(f64::INFINITY, f64::min)
+    };
+    // The tolerance of both, at single texels: measured 0.99.
+    let check = |picture: &[[f32; 4]]| {
+        at_least("darkest pixel over the same of a whole body", darkest(picture), 0.95)
+    };
+    holds(check(&shown(Some(view()))));
+    let away = Shot { target: [0.0, 400.0, 0.0], ..SHOT };
+    notices(check(&shown(Some(View { camera: away.camera(), ..view() }))));
 }
 
 /// From inside of a closed body everything faces away.

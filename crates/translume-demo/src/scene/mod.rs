@@ -89,6 +89,8 @@ pub enum Shape {
         file: PathBuf,
         #[serde(default)]
         normals: Normals,
+        /// Close holes of up to this many edges.
+        fill_holes: Option<usize>,
     },
     Sphere {
         center: [f32; 3],
@@ -102,6 +104,7 @@ pub enum Shape {
         name: String,
         #[serde(default)]
         normals: Normals,
+        fill_holes: Option<usize>,
     },
 }
 
@@ -185,16 +188,16 @@ impl Scene {
     /// The scene's mesh, its path taken relative to the scene file at `path`, and whether its triangles keep their own normals.
     pub fn model(&self, path: &Path) -> Result<(model::Model, bool), Error> {
         match &self.shape {
-            Shape::Mesh { file, normals } => {
+            Shape::Mesh { file, normals, fill_holes } => {
                 let file = path.parent().unwrap_or(Path::new("")).join(file);
-                Ok((model::open_file(&file)?, *normals == Normals::Flat))
+                Ok((model::open_file(&file)?.closed(*fill_holes)?, *normals == Normals::Flat))
             }
             // 20,480 triangles: no point of the surface is further than 0.02 % of the radius from the sphere.
             Shape::Sphere { center, radius } => {
                 Ok((model::clean(builtin::sphere(*center, *radius, 5))?, false))
             }
             Shape::Box { min, max } => Ok((model::clean(builtin::cuboid(*min, *max, [8; 3]))?, false)),
-            Shape::Builtin { name, normals } => {
+            Shape::Builtin { name, normals, fill_holes } => {
                 let mesh = builtin::builtin(name).ok_or_else(|| Error::Scene {
                     path: path.to_owned(),
                     problem: format!(
@@ -202,7 +205,7 @@ impl Scene {
                         builtin::NAMES.join(", ")
                     ),
                 })?;
-                Ok((model::clean(mesh)?, *normals == Normals::Flat))
+                Ok((model::clean(mesh)?.closed(*fill_holes)?, *normals == Normals::Flat))
             }
         }
     }
