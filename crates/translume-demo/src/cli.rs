@@ -16,6 +16,8 @@ Examples:
   translume render creature --frames 9 --timings -o morph.png          and how long each stage took
   translume inspect bunny.obj --json
   translume inspect creature teapot bunny.obj --table                  a line for each
+  translume report --suite -o report                                   every method in every scene: a page for a browser
+  translume report scene.json -o report                                the same of a scene of yours
   translume report --suite gather -o report                            error beside time of every kind of light
   translume report --suite scatter -o report                           and of every method
 
@@ -178,16 +180,21 @@ pub struct Inspect {
     pub layout: Layout,
 }
 
+/// The suite of every method in every scene.
+pub const ALL: &str = "methods";
+
 /// `translume report`.
 #[derive(Debug, Args)]
 pub struct Report {
-    /// What to measure: gather (irradiance in every kind of light) or scatter (exitance by every method); a wrong name lists them all.
-    #[arg(long, value_name = "NAME")]
-    pub suite: String,
-    /// OBJ, glTF or GLB files, or the names of built-in models, separated by commas. By default the creature, and
-    /// stanford-bunny.obj where the folder that TRANSLUME_MODELS names has it; scatter then twists its spot.obj too.
-    #[arg(long, value_name = "MODEL,…", value_delimiter = ',')]
+    /// Scenes (FILE.json), or models: OBJ, glTF or GLB files, or the names of built-in models. By default the scenes that come with
+    /// the program; of gather and scatter the creature, and stanford-bunny.obj where the folder that TRANSLUME_MODELS names has it; scatter then
+    /// twists its spot.obj too.
+    #[arg(value_name = "SCENE|MODEL")]
     pub models: Vec<String>,
+    /// What to measure: methods (every method in every scene, against both truths; the default), gather (irradiance in every kind of light) or
+    /// scatter (exitance against all pairs). Without a name the scenes that come with the program are added to those named.
+    #[arg(long, value_name = "NAME", num_args = 0..=1, default_missing_value = ALL)]
+    pub suite: Option<String>,
     /// Width of the atlas in texels; scatter also takes a quarter, a half and twice of that.
     #[arg(long, value_name = "N", default_value_t = 512)]
     pub atlas: u32,
@@ -198,7 +205,8 @@ pub struct Report {
     /// Fewer settings, fewer repetitions.
     #[arg(long)]
     pub quick: bool,
-    /// Folder to write SUITE.csv, SUITE.md and SUITE.svg to; it is made where there is none.
+    /// Folder to write the report to: index.html, report.csv and pareto.png; of gather and scatter SUITE.csv, SUITE.md and SUITE.svg. It is made
+    /// where there is none.
     #[arg(short, long, value_name = "DIR")]
     pub output: PathBuf,
 }

@@ -20,6 +20,8 @@ pub enum Error {
     Spherical(#[from] SphericalError),
     #[error(transparent)]
     Translume(#[from] translume::Error),
+    #[error(transparent)]
+    Rival(#[from] translume_rivals::Error),
     #[error("{}: {problem}", path.display())]
     Scene { path: PathBuf, problem: String },
     #[error("{}: {problem}", path.display())]

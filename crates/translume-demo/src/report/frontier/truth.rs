@@ -1,0 +1,229 @@
+//! What a scene's picture should be: the integral of a profile over the surface, and light followed through the volume.
+
+use super::stage::Stage;
+use crate::error::Error;
+use crate::picture::{Develop, Picture};
+use crate::twin;
+use glam::DVec3;
+use rayon::prelude::*;
+use std::f64::consts::PI;
+use std::time::{Duration, Instant};
+use translume::Profile;
+use translume_reference::composite::Camera;
+use translume_reference::converged::Converged;
+use translume_reference::fresnel::{hemispherical_transmittance, transmittance};
+use translume_reference::path::PathTracer;
+use translume_reference::{Hit, Light, Surface};
+
+/// How long light is followed through a scene.
+#[derive(Clone, Copy, Debug)]
+pub struct Patience {
+    /// Root mean square of the standard error over the mean: so little is enough.
+    pub noise: f64,
+    pub most: Duration,
+}
+
+/// Both truths, pixel by pixel.
+pub struct Truths {
+    width: u32,
+    /// Pixels that the body fills, as far as their neighbours tell.
+    pub mask: Vec<bool>,
+    /// The name of a profile, and radiance by it.
+    converged: Vec<(&'static str, Vec<[f64; 3]>)>,
+    pub traced: Option<Traced>,
+    /// Why light was not followed.
+    pub untraced: Option<String>,
+    /// Stops that make the picture neither dark nor burnt out.
+    exposure: f32,
+}
+
+/// Light followed through the volume.
+pub struct Traced {
+    pub radiance: Vec<[f64; 3]>,
+    /// One standard error of it.
+    pub error: Vec<[f64; 3]>,
+    /// Paths per pixel.
+    pub samples: u32,
+    pub seconds: f64,
+}
+
+/// Steps on which light is cast, over the body's size; shadows in the integral are as sharp as that.
+const EDGE: f64 = 1.0 / 150.0;
+/// Paths of a pixel between two looks at the clock.
+const PASS: u32 = 4;
+/// This share of the pixels is darker than the level below.
+const BRIGHT_SHARE: f64 = 0.95;
+const BRIGHT_LEVEL: f64 = 0.7;
+
+impl Truths {
+    /// `profiles`: by name, those whose integral is wanted. `proceed` is told what is under way.
+    pub fn new(
+        stage: &Stage,
+        profiles: &[&'static str],
+        patience: Patience,
+        told: &dyn Fn(&str),
+    ) -> Result<Self, Error> {
+        let surface = stage.surface();
+        let lights = stage.twin_lights();
+        let camera = stage.twin_camera();
+        let seen = Seen::new(&camera, &surface);
+        let mut converged = Vec::new();
+        for &name in profiles {
+            told(&format!("integral of {name}"));
+            let profile = Profile::named(name)?;
+            converged.push((name, integral(stage, &seen, &surface, &lights, &profile)));
+        }
+        told("paths");
+        let (traced, untraced) = match trace(stage, &surface, &lights, camera, patience) {
+            Ok(traced) => (Some(traced), None),
+            Err(reason) => (None, Some(reason)),
+        };
+        let mut truths = Self {
+            width: stage.camera.width,
+            mask: seen.mask,
+            converged,
+            traced,
+            untraced,
+            exposure: 0.0,
+        };
+        truths.exposure = truths.best().map_or(0.0, |best| exposure(best, &truths.mask));
+        Ok(truths)
+    }
+
+    pub fn converged(&self, profile: &str) -> Option<&[[f64; 3]]> {
+        self.converged.iter().find(|(name, _)| *name == profile).map(|(_, radiance)| radiance.as_slice())
+    }
+
+    /// The better of the truths there are.
+    fn best(&self) -> Option<&[[f64; 3]]> {
+        let traced = self.traced.as_ref().map(|traced| traced.radiance.as_slice());
+        traced.or_else(|| self.converged.first().map(|(_, radiance)| radiance.as_slice()))
+    }
+
+    /// A picture as it is shown, the pixels that the body fills before a backdrop.
+    pub fn shown<T: Shown>(&self, radiance: &[T]) -> Option<Picture> {
+        if radiance.len() != self.mask.len() {
+            return None;
+        }
+        let sample = |(pixel, inside): (&T, &bool)| {
+            let [r, g, b] = pixel.rgb().map(|c| c as f32);
+            if *inside { [r, g, b, 1.0] } else { [0.0; 4] }
+        };
+        let samples: Vec<[f32; 4]> = radiance.iter().zip(&self.mask).map(sample).collect();
+        Some(Picture::from_samples(&samples, self.width, 1, Develop::Display { exposure: self.exposure }))
+    }
+}
+
+/// Linear colour of a pixel.
+pub trait Shown {
+    fn rgb(&self) -> [f64; 3];
+}
+
+impl Shown for [f32; 3] {
+    fn rgb(&self) -> [f64; 3] {
+        self.map(f64::from)
+    }
+}
+
+impl Shown for [f64; 3] {
+    fn rgb(&self) -> [f64; 3] {
+        *self
+    }
+}
+
+/// Where the middles of pixels meet the surface.
+struct Seen {
+    hits: Vec<Option<(Hit, DVec3)>>,
+    mask: Vec<bool>,
+}
+
+impl Seen {
+    fn new(camera: &Camera, surface: &Surface) -> Self {
+        let (width, height) = (camera.width, camera.height);
+        let hit = |index: usize| {
+            let direction = camera.direction(index % width, index / width);
+            surface.closest_hit(camera.eye, direction).map(|hit| (hit, DVec3::from(direction).normalize_or_zero()))
+        };
+        let hits: Vec<_> = (0..width * height).into_par_iter().map(hit).collect();
+        let inside = |index: usize| {
+            let (x, y) = (index % width, index / width);
+            let near = |k: usize, most: usize| k.saturating_sub(1)..(k + 2).min(most);
+            near(y, height).all(|row| near(x, width).all(|column| hits[row * width + column].is_some()))
+        };
+        let mask = (0..width * height).map(inside).collect();
+        Self { hits, mask }
+    }
+}
+
+/// Radiance at the middle of each pixel that counts.
+fn integral(
+    stage: &Stage,
+    seen: &Seen,
+    surface: &Surface,
+    lights: &[Light],
+    profile: &Profile,
+) -> Vec<[f64; 3]> {
+    let eta = f64::from(stage.medium.ior);
+    let edge = EDGE * f64::from(stage.model.mesh.diagonal() * stage.mm_per_unit);
+    let converged = Converged::with_profiles(
+        surface,
+        lights,
+        eta,
+        twin::profiles(profile, &stage.medium),
+        edge,
+    );
+    let counted: Vec<usize> = (0..seen.mask.len()).filter(|&k| seen.mask[k]).collect();
+    let hit = |k: &usize| seen.hits[*k];
+    let places: Vec<[f64; 3]> = counted
+        .iter()
+        .filter_map(hit)
+        .map(|(hit, _)| surface.point(hit.triangle, hit.barycentric))
+        .collect();
+    let exitance = converged.exitance(&places);
+    let mut radiance = vec![[0.0; 3]; seen.mask.len()];
+    let seen_there = counted.iter().filter_map(|k| hit(k).map(|found| (*k, found)));
+    for ((k, (hit, direction)), b) in seen_there.zip(exitance) {
+        let normal = DVec3::from(surface.normal(hit.triangle, hit.barycentric));
+        let leaves = transmittance(eta, -normal.dot(direction)) / (PI * hemispherical_transmittance(eta));
+        radiance[k] = b.map(|b| b * leaves);
+    }
+    radiance
+}
+
+/// Follows light until it is quiet enough, or long enough.
+fn trace(
+    stage: &Stage,
+    surface: &Surface,
+    lights: &[Light],
+    camera: Camera,
+    patience: Patience,
+) -> Result<Traced, String> {
+    let start = Instant::now();
+    let shape = twin::shape(stage.exact.as_ref(), surface, f64::from(stage.mm_per_unit))
+        .map_err(|error| error.to_string())?;
+    let tracer = PathTracer::new(shape.as_ref(), twin::volume(&stage.medium, stage.g), lights)
+        .map_err(|error| error.to_string())?;
+    let mut trace = tracer.trace(camera, 1);
+    loop {
+        trace.pass(PASS, |_| true);
+        let estimate = trace.estimate();
+        let is_late = start.elapsed() > patience.most;
+        if is_late || estimate.noise() < patience.noise {
+            return Ok(Traced {
+                samples: estimate.samples.first().copied().unwrap_or(0),
+                radiance: estimate.radiance,
+                error: estimate.error,
+                seconds: start.elapsed().as_secs_f64(),
+            });
+        }
+    }
+}
+
+fn exposure(radiance: &[[f64; 3]], mask: &[bool]) -> f32 {
+    let inside = radiance.iter().zip(mask).filter(|(_, inside)| **inside);
+    let mut levels: Vec<f64> = inside.map(|(rgb, _)| rgb.iter().copied().fold(0.0, f64::max)).collect();
+    levels.sort_by(f64::total_cmp);
+    let rank = (BRIGHT_SHARE * levels.len() as f64) as usize;
+    let bright = levels.get(rank).copied().unwrap_or(0.0);
+    if bright > 0.0 { (BRIGHT_LEVEL / bright).log2() as f32 } else { 0.0 }
+}
