@@ -3,7 +3,7 @@
 use super::channel::Channel;
 use super::half_space::{Entry, albedo};
 use super::radial::Radial;
-use crate::Error;
+use crate::{Error, Medium};
 use std::f64::consts::PI;
 
 /// Which of the three fits of Christensen and Burley 2015 shapes the profile.
@@ -21,6 +21,14 @@ pub enum BurleyFit {
 }
 
 impl BurleyFit {
+    /// The profile of a medium in two numbers per channel, for a host that diffuses by itself.
+    #[must_use]
+    pub fn shape(self, medium: &Medium) -> BurleyShape {
+        let channels = Channel::of(medium);
+        let each: [Burley; 3] = std::array::from_fn(|k| Burley::new(&channels[k], self, k));
+        BurleyShape { albedo: each.map(|c| c.albedo as f32), length: each.map(|c| c.length as f32) }
+    }
+
     /// # Errors
     /// [`Error::Profile`] names the channel whose length cannot be.
     pub(crate) fn validate(self) -> Result<(), Error> {
@@ -35,6 +43,15 @@ impl BurleyFit {
         }
         Ok(())
     }
+}
+
+/// What shapes the profile of each channel, RGB.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BurleyShape {
+    /// Albedo A of the surface, 0..=1.
+    pub albedo: [f32; 3],
+    /// d, mm: a quarter of the energy falls off as e^(−r/d), three quarters as e^(−r/3d).
+    pub length: [f32; 3],
 }
 
 /// R_d(r) = A/(8π d r)·(e^(−r/d) + e^(−r/3d)).

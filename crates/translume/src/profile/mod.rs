@@ -18,7 +18,7 @@ mod tests;
 
 use crate::layout::TermLayout;
 use crate::{Error, Medium, fresnel};
-pub use burley::BurleyFit;
+pub use burley::{BurleyFit, BurleyShape};
 use channel::Channel;
 use dipole::Dipole;
 pub use layers::{Layer, Layers};
