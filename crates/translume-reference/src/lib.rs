@@ -10,6 +10,7 @@
 //! | [`scatter`] | radiant exitance from all pairs of texels, with the profile averaged over each source |
 //! | [`converged`] | radiant exitance from the triangles themselves: what `scatter` tends to with ever more texels |
 //! | [`composite`] | the camera's picture |
+//! | [`path`] | the picture without any diffusion model: paths through the body, with the standard error of every pixel |
 //! | [`metrics`] | how far a picture is from another |
 //!
 //! The stages carry the names of the GPU stages they judge and share no code with them. Lengths are millimetres,
@@ -26,6 +27,7 @@ pub mod gather;
 pub mod lights;
 pub mod medium;
 pub mod metrics;
+pub mod path;
 pub mod profile;
 mod quadrature;
 mod rgb;

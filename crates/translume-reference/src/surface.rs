@@ -140,7 +140,20 @@ impl Surface {
         self.triangles[triangle as usize].map(|v| DVec3::from(self.positions[v as usize]))
     }
 
-    /// Calls `found` for hits within `range`; it returns the range for what follows.
+    /// Calls `found` for every hit along a ray from anywhere, in no order, with the face's normal, not of unit length.
+    pub(crate) fn every_hit(
+        &self,
+        origin: [f64; 3],
+        direction: [f64; 3],
+        mut found: impl FnMut(Hit, DVec3) -> [f64; 2],
+    ) {
+        self.traverse(origin, direction, [0.0, f64::INFINITY], None, |hit| {
+            let [a, b, c] = self.corners(hit.triangle);
+            found(hit, (b - a).cross(c - a))
+        });
+    }
+
+    /// Calls `found` for hits within `range`; it returns the range for what follows. Nearer boxes come first.
     fn traverse(
         &self,
         origin: [f64; 3],
@@ -150,14 +163,27 @@ impl Surface {
         mut found: impl FnMut(Hit) -> [f64; 2],
     ) {
         let ray = Ray::new(origin.into(), direction.into());
-        let mut pending: Vec<u32> = if self.bvh.nodes.is_empty() { Vec::new() } else { vec![0] };
-        while let Some(index) = pending.pop() {
-            let node = &self.bvh.nodes[index as usize];
-            if !ray.meets_box(node.aabb(), range) {
+        let mut pending = Pending::new();
+        if let Some(root) = self.bvh.nodes.first()
+            && let Some(enter) = ray.enters_box(root.aabb(), range)
+        {
+            pending.push((0, enter));
+        }
+        while let Some((index, enter)) = pending.pop() {
+            // What was found since may be nearer than the box.
+            if enter > range[1] * SLACK {
                 continue;
             }
+            let node = &self.bvh.nodes[index as usize];
             if !node.is_leaf() {
-                pending.extend([node.first_index, node.first_index + 1]);
+                let children = [node.first_index, node.first_index + 1]
+                    .map(|child| (child, ray.enters_box(self.bvh.nodes[child as usize].aabb(), range)));
+                let far_first = if children[0].1 < children[1].1 { [1, 0] } else { [0, 1] };
+                for (child, enter) in far_first.map(|k| children[k]) {
+                    if let Some(enter) = enter {
+                        pending.push((child, enter));
+                    }
+                }
                 continue;
             }
             for slot in node.first_index..node.first_index + node.prim_count {
@@ -172,6 +198,39 @@ impl Surface {
                 }
             }
         }
+    }
+}
+
+/// Two roundings on either side of a box (Ize 2013, "Robust BVH Ray Traversal").
+const SLACK: f64 = 1.0 + 4.0 * f64::EPSILON;
+
+/// Nodes still to visit, with where the ray enters them. The first ones need no memory of the heap: rays are many, deep trees few.
+struct Pending {
+    first: [(u32, f64); 64],
+    count: usize,
+    rest: Vec<(u32, f64)>,
+}
+
+impl Pending {
+    fn new() -> Self {
+        Self { first: [(0, 0.0); 64], count: 0, rest: Vec::new() }
+    }
+
+    fn push(&mut self, node: (u32, f64)) {
+        if let Some(slot) = self.first.get_mut(self.count) {
+            *slot = node;
+            self.count += 1;
+        } else {
+            self.rest.push(node);
+        }
+    }
+
+    fn pop(&mut self) -> Option<(u32, f64)> {
+        if let Some(node) = self.rest.pop() {
+            return Some(node);
+        }
+        self.count = self.count.checked_sub(1)?;
+        Some(self.first[self.count])
     }
 }
 
@@ -196,13 +255,13 @@ impl Ray {
         Self { origin, inverse, axes: [x, y, z], shear }
     }
 
-    fn meets_box(&self, bounds: &Aabb, range: [f64; 2]) -> bool {
+    /// Where the ray enters a box that it meets within `range`.
+    fn enters_box(&self, bounds: &Aabb, range: [f64; 2]) -> Option<f64> {
         let low = (bounds.min.as_dvec3() - self.origin) * self.inverse;
         let high = (bounds.max.as_dvec3() - self.origin) * self.inverse;
         let enter = low.min(high).max_element().max(range[0]);
         let leave = low.max(high).min_element().min(range[1]);
-        // Two roundings on either side (Ize 2013, "Robust BVH Ray Traversal").
-        enter <= leave * (1.0 + 4.0 * f64::EPSILON)
+        (enter <= leave * SLACK).then_some(enter)
     }
 
     fn meets_triangle(&self, corners: [DVec3; 3]) -> Option<(f64, [f64; 2])> {

@@ -8,7 +8,7 @@ use crate::EnvironmentMap;
 use crate::rgb::mean;
 
 /// A density over directions, proportional to a map's mean radiance.
-pub(super) struct Density {
+pub(crate) struct Density {
     /// Power up to the end of each row.
     rows: Vec<f64>,
     /// Within each row, power up to the end of each pixel.

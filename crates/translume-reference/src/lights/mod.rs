@@ -5,15 +5,15 @@
 //! or none do, and between them the quotient's bias falls with the square of the number of rays.
 
 mod ambient;
-mod beam;
-mod density;
+pub(crate) mod beam;
+pub(crate) mod density;
 mod environment;
 mod polygon;
 mod receiver;
 mod rectangle;
 mod solid_angle;
 mod sphere;
-mod strata;
+pub(crate) mod strata;
 
 use std::sync::Arc;
 
