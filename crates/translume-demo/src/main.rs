@@ -15,6 +15,7 @@ mod report;
 mod scene;
 mod studio;
 mod timings;
+mod twin;
 
 use clap::Parser as _;
 use std::process::ExitCode;

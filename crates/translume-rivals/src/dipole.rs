@@ -132,8 +132,10 @@ mod tests {
             .map(|k| Twin::new(medium.sigma_s_prime[k].into(), medium.sigma_a[k].into(), medium.ior.into()))
             .collect();
         for (k, twin) in twins.iter().enumerate() {
-            let found = [layout.sigma_tr[k], layout.z_real[k], layout.z_virtual[k], 2.0 * layout.half_albedo[k]];
-            for (found, expected) in found.into_iter().zip([twin.sigma_tr, twin.z[0], twin.z[1], twin.albedo]) {
+            let found =
+                [layout.sigma_tr[k], layout.z_real[k], layout.z_virtual[k], 2.0 * layout.half_albedo[k]];
+            for (found, expected) in found.into_iter().zip([twin.sigma_tr, twin.z[0], twin.z[1], twin.albedo])
+            {
                 // f32.
                 assert!((f64::from(found) - expected).abs() <= 1e-6 * expected, "{k}: {found} {expected}");
             }

@@ -26,8 +26,7 @@ impl Geometry {
             let problem = format!("has triangle {k} {:?}, but {vertices} vertices", triangles[k]);
             return Err(Error::Mesh { problem, remedy: "repair its indices" });
         }
-        let vectors =
-            |label| gpu::buffer(device, label, 16 * vertices as u64, wgpu::BufferUsages::VERTEX);
+        let vectors = |label| gpu::buffer(device, label, 16 * vertices as u64, wgpu::BufferUsages::VERTEX);
         let indices: &[u8] = bytemuck::cast_slice(triangles);
         let geometry = Self {
             positions: vectors("rival positions"),
@@ -57,8 +56,7 @@ impl Geometry {
         for (content, buffer) in [(positions, &self.positions), (normals, &self.normals)] {
             let bytes: &[u8] = bytemuck::cast_slice(content);
             if bytes.len() as u64 != buffer.size() {
-                let problem =
-                    format!("has {} vertices now and had {}", content.len(), buffer.size() / 16);
+                let problem = format!("has {} vertices now and had {}", content.len(), buffer.size() / 16);
                 return Err(Error::Mesh { problem, remedy: "make a new Geometry for another mesh" });
             }
             queue.write_buffer(buffer, 0, bytes);

@@ -29,11 +29,7 @@ pub const fn float(filterable: bool) -> wgpu::TextureSampleType {
 }
 
 /// A group with these bindings, all visible to vertex and fragment shaders.
-pub fn layout(
-    device: &wgpu::Device,
-    label: &str,
-    bindings: &[(u32, BindingType)],
-) -> wgpu::BindGroupLayout {
+pub fn layout(device: &wgpu::Device, label: &str, bindings: &[(u32, BindingType)]) -> wgpu::BindGroupLayout {
     let visibility = wgpu::ShaderStages::VERTEX_FRAGMENT;
     let entries: Vec<_> = bindings
         .iter()
@@ -56,12 +52,7 @@ pub fn bind(
     device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some(label), layout, entries: &entries })
 }
 
-pub fn buffer(
-    device: &wgpu::Device,
-    label: &str,
-    size: u64,
-    usage: wgpu::BufferUsages,
-) -> wgpu::Buffer {
+pub fn buffer(device: &wgpu::Device, label: &str, size: u64, usage: wgpu::BufferUsages) -> wgpu::Buffer {
     device.create_buffer(&wgpu::BufferDescriptor {
         label: Some(label),
         size: size.max(16),
@@ -187,10 +178,8 @@ pub fn begin<'e, const N: usize>(
     colours: [&wgpu::TextureView; N],
     depth: Option<&wgpu::TextureView>,
 ) -> wgpu::RenderPass<'e> {
-    let clear = wgpu::Operations {
-        load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
-        store: wgpu::StoreOp::Store,
-    };
+    let clear =
+        wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT), store: wgpu::StoreOp::Store };
     let attachment = |view| {
         Some(wgpu::RenderPassColorAttachment { view, depth_slice: None, resolve_target: None, ops: clear })
     };
@@ -199,10 +188,7 @@ pub fn begin<'e, const N: usize>(
         color_attachments: &colours.map(attachment),
         depth_stencil_attachment: depth.map(|view| wgpu::RenderPassDepthStencilAttachment {
             view,
-            depth_ops: Some(wgpu::Operations {
-                load: wgpu::LoadOp::Clear(1.0),
-                store: wgpu::StoreOp::Store,
-            }),
+            depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(1.0), store: wgpu::StoreOp::Store }),
             stencil_ops: None,
         }),
         ..Default::default()

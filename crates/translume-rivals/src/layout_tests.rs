@@ -29,15 +29,27 @@ macro_rules! fields {
 fn rust_and_wgsl_agree() {
     let light = fields!(
         LightLayout,
-        [origin, perspective, right, half_width, up, near, forward, far, colour, shadow, region_low, region_high]
+        [
+            origin,
+            perspective,
+            right,
+            half_width,
+            up,
+            near,
+            forward,
+            far,
+            colour,
+            shadow,
+            region_low,
+            region_high
+        ]
     );
     let scene = fields!(SceneLayout, [view_projection, eye, eta, exit_scale, light_count, lights]);
     for source in [crate::TRANSLUCENT_SHADOW_MAP, crate::SCREEN_SPACE] {
         compare(&source, "Light", &light, size_of::<LightLayout>()).unwrap();
         compare(&source, "Scene", &scene, size_of::<SceneLayout>()).unwrap();
     }
-    let medium =
-        fields!(MediumLayout, [sigma_tr, table_step, z_real, z_virtual, half_albedo, share, radii]);
+    let medium = fields!(MediumLayout, [sigma_tr, table_step, z_real, z_virtual, half_albedo, share, radii]);
     compare(&crate::TRANSLUCENT_SHADOW_MAP, "Medium", &medium, size_of::<MediumLayout>()).unwrap();
     let profile = fields!(ProfileLayout, [albedo, sample_count, shape, focal]);
     compare(&crate::SCREEN_SPACE, "Profile", &profile, size_of::<ProfileLayout>()).unwrap();

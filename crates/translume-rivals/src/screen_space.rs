@@ -95,8 +95,7 @@ impl Screen {
         let scene = buffer("rival scene", size_of::<SceneLayout>() as u64, wgpu::BufferUsages::UNIFORM);
         let constants =
             buffer("rival profile", size_of::<ProfileLayout>() as u64, wgpu::BufferUsages::UNIFORM);
-        let samples =
-            buffer("rival samples", 16 * u64::from(settings.samples), wgpu::BufferUsages::STORAGE);
+        let samples = buffer("rival samples", 16 * u64::from(settings.samples), wgpu::BufferUsages::STORAGE);
         let [width, height] = size;
         let pixels = PIXEL.map(|format| gpu::target(device, "irradiance", format, [width, height, 1], 1));
         let pixel_views = pixels.each_ref().map(|texture| gpu::view(texture, Dimension::D2));
@@ -104,11 +103,8 @@ impl Screen {
         let maps = gpu::target(device, "depth maps", gpu::DEPTH, square, 1);
         let all_maps = gpu::view(&maps, Dimension::D2Array);
         let texture = wgpu::BindingResource::TextureView;
-        let light_resources = [
-            (0, scene.as_entire_binding()),
-            (1, constants.as_entire_binding()),
-            (2, texture(&all_maps)),
-        ];
+        let light_resources =
+            [(0, scene.as_entire_binding()), (1, constants.as_entire_binding()), (2, texture(&all_maps))];
         let blur_resources = [
             (1, constants.as_entire_binding()),
             (3, texture(&pixel_views[0])),

@@ -93,7 +93,8 @@ impl Maps {
             [(0, gpu::UNIFORM), (1, gpu::UNIFORM), (2, map(true)), (3, map(true)), (4, gpu::SAMPLER)];
         let picture_layout = gpu::layout(device, "translucent picture", &bindings);
 
-        let uniform = |label, size: usize| gpu::buffer(device, label, size as u64, wgpu::BufferUsages::UNIFORM);
+        let uniform =
+            |label, size: usize| gpu::buffer(device, label, size as u64, wgpu::BufferUsages::UNIFORM);
         let scene = uniform("rival scene", size_of::<SceneLayout>());
         let constants = uniform("rival medium", size_of::<MediumLayout>());
         let width = settings.map;
@@ -138,8 +139,7 @@ impl Maps {
             depth: Some(wgpu::CompareFunction::Less),
             constants: &constants_of_shader,
         };
-        let seen =
-            Pass { layout: &picture_layout, vertex: "from_eye", targets: &[gpu::PICTURE], ..mesh };
+        let seen = Pass { layout: &picture_layout, vertex: "from_eye", targets: &[gpu::PICTURE], ..mesh };
         Ok(Self {
             store: mesh.pipeline(device),
             halve: Pass {
@@ -260,9 +260,6 @@ impl Layer {
             ];
             gpu::bind(device, "halve", halve, &resources)
         });
-        Self {
-            finer: finer.collect(),
-            targets: (0..levels).map(|level| one(level, Dimension::D2)).collect(),
-        }
+        Self { finer: finer.collect(), targets: (0..levels).map(|level| one(level, Dimension::D2)).collect() }
     }
 }

@@ -7,6 +7,7 @@ mod date;
 mod flicker;
 mod frontier;
 mod gather;
+mod method;
 mod plot;
 mod scatter;
 mod scenes;

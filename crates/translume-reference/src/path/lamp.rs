@@ -64,9 +64,11 @@ impl Lamp {
                 let opening = 2.0 * (0.5 * half_angle).sin().powi(2);
                 Self::Cap { axis: axis.into(), opening, radiance }
             }
-            Light::Rectangle { center, half_right, half_up, radiance, .. } => {
-                Self::Rectangle { center: center.into(), halves: [half_right.into(), half_up.into()], radiance }
-            }
+            Light::Rectangle { center, half_right, half_up, radiance, .. } => Self::Rectangle {
+                center: center.into(),
+                halves: [half_right.into(), half_up.into()],
+                radiance,
+            },
             Light::Sphere { center, radius, radiance, .. } => {
                 Self::Ball { center: center.into(), radius, radiance }
             }
@@ -153,8 +155,11 @@ impl Lamp {
                     halves.iter().all(|half| half.dot(place).abs() <= half.length_squared() * (1.0 + 1e-12));
                 // |normal| is a quarter of the area.
                 let density = distance * distance / (4.0 * facing);
-                (facing > 0.0 && distance > 0.0 && inside)
-                    .then_some(Sight { distance, radiance: *radiance, density })
+                (facing > 0.0 && distance > 0.0 && inside).then_some(Sight {
+                    distance,
+                    radiance: *radiance,
+                    density,
+                })
             }
             Self::Ball { center, radius, radiance } => {
                 let (axis, distance) = towards(origin, *center).filter(|(_, distance)| distance > radius)?;

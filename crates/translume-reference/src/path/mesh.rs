@@ -139,10 +139,12 @@ impl Grid {
     /// (Rosenfeld and Pfaltz 1966).
     fn distances(&self, touched: &[bool]) -> Vec<i8> {
         let mut steps: Vec<i8> = touched.iter().map(|&touched| if touched { 0 } else { i8::MAX }).collect();
-        let neighbours: Vec<IVec3> = (0..13).map(|k| IVec3::new(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1)).collect();
+        let neighbours: Vec<IVec3> =
+            (0..13).map(|k| IVec3::new(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1)).collect();
         let cells: Vec<IVec3> = self.cells().collect();
         let mut relax = |cell: &IVec3, sign: i32| {
-            let near = neighbours.iter().map(|offset| *cell + *offset * sign).filter(|&other| self.holds(other));
+            let near =
+                neighbours.iter().map(|offset| *cell + *offset * sign).filter(|&other| self.holds(other));
             let least = near.map(|other| steps[self.index(other)]).min().unwrap_or(i8::MAX);
             let own = &mut steps[self.index(*cell)];
             *own = (*own).min(least.saturating_add(1));

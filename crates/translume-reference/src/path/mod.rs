@@ -40,7 +40,9 @@ use walk::Harvest;
 #[non_exhaustive]
 pub enum PathError {
     /// The surface does not enclose a volume.
-    #[error("{edges} edges of the surface lack a triangle on one side; close the mesh, as paths must know inside from outside")]
+    #[error(
+        "{edges} edges of the surface lack a triangle on one side; close the mesh, as paths must know inside from outside"
+    )]
     Open {
         /// Edges without a counterpart.
         edges: usize,

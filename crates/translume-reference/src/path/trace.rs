@@ -103,7 +103,11 @@ impl<'a> Trace<'a> {
             radiance: each(|sums| sums.mean(sums.radiance)),
             error: each(Sums::error),
             single: each(|sums| sums.mean(sums.single)),
-            coverage: self.pixels.iter().map(|sums| f64::from(sums.met) / f64::from(sums.count.max(1))).collect(),
+            coverage: self
+                .pixels
+                .iter()
+                .map(|sums| f64::from(sums.met) / f64::from(sums.count.max(1)))
+                .collect(),
             samples: self.pixels.iter().map(|sums| sums.count).collect(),
         }
     }

@@ -62,7 +62,11 @@ impl PathTracer<'_> {
             inside: 0.0,
             density: 0.0,
         };
-        if self.is_matched() { walk.collide_ahead() } else { walk.refract_in() }
+        if self.is_matched() {
+            walk.collide_ahead()
+        } else {
+            walk.refract_in()
+        }
         walk.harvest
     }
 }
@@ -180,7 +184,10 @@ impl Walk<'_> {
         let passes = transmittance(if is_inside { 1.0 / ior } else { ior }, cos);
         let is_kept = self.dice.roll() >= passes;
         if is_kept {
-            self.turn(self.at(), self.direction - crossing.normal * (2.0 * crossing.normal.dot(self.direction)));
+            self.turn(
+                self.at(),
+                self.direction - crossing.normal * (2.0 * crossing.normal.dot(self.direction)),
+            );
         } else {
             self.bend(self.at(), crossing.normal, !is_inside);
         }
@@ -312,9 +319,8 @@ fn inside(shape: &dyn Shape, origin: DVec3, aim: &Aim, lamp: &Lamp) -> Option<f6
         length += f64::from(balance) * aim.distance;
     }
     let at = origin + aim.direction * entry;
-    let is_dark = lamp
-        .region()
-        .is_some_and(|(low, high)| at.cmplt(low.into()).any() || at.cmpgt(high.into()).any());
+    let is_dark =
+        lamp.region().is_some_and(|(low, high)| at.cmplt(low.into()).any() || at.cmpgt(high.into()).any());
     (!is_dark).then_some(length.max(0.0))
 }
 

@@ -18,7 +18,11 @@ fn subjects() -> Vec<(&'static str, translume_mesh::Mesh)> {
 }
 
 fn lit(kind: &str, mesh: translume_mesh::Mesh, medium: Medium, size: u32) -> Scene {
-    let lamp = Light::Point(PointLight { position: [-30.0, 40.0, -80.0], intensity: [1e4; 3], ..Default::default() });
+    let lamp = Light::Point(PointLight {
+        position: [-30.0, 40.0, -80.0],
+        intensity: [1e4; 3],
+        ..Default::default()
+    });
     let sun = Light::Directional(DirectionalLight { to_light: [0.6, 0.7, 0.5], ..Default::default() });
     let lights = match kind {
         "behind" => vec![lamp],
@@ -34,14 +38,18 @@ fn rivals() -> Vec<(String, Rival)> {
     let maps = maps.into_iter().flat_map(|(rings, spokes, map)| {
         [false, true].map(|displaced| {
             let settings = TranslucentShadowMap { rings, spokes, map, displaced };
-            let name = format!("tsm {} of {map}{}", settings.samples(), if displaced { " displaced" } else { "" });
+            let name =
+                format!("tsm {} of {map}{}", settings.samples(), if displaced { " displaced" } else { "" });
             (name, Rival::TranslucentShadowMap(settings))
         })
     });
     let screens = [(11, true), (55, true), (200, true), (1000, true), (200, false)];
     let screens = screens.into_iter().map(|(samples, transmission)| {
         let settings = ScreenSpace { samples, transmission, ..Default::default() };
-        (format!("screen {samples}{}", if transmission { "" } else { " opaque" }), Rival::ScreenSpace(settings))
+        (
+            format!("screen {samples}{}", if transmission { "" } else { " opaque" }),
+            Rival::ScreenSpace(settings),
+        )
     });
     maps.chain(screens).collect()
 }

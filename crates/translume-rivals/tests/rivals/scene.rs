@@ -83,8 +83,7 @@ impl Scene {
     pub fn judge<P: Profile>(&self, profiles: [P; 3], stride: usize) -> Picture {
         let surface = self.surface();
         let lights: Vec<_> = self.lights.iter().map(|each| light(each, 1.0)).collect();
-        let converged =
-            Converged::with_profiles(&surface, &lights, self.medium.ior.into(), profiles, 0.5);
+        let converged = Converged::with_profiles(&surface, &lights, self.medium.ior.into(), profiles, 0.5);
         let size = self.shot.size as usize;
         let picked = |k: &usize| (k % size) % stride == stride / 2 && (k / size) % stride == stride / 2;
         let hits = self.hits(&surface);
@@ -128,7 +127,10 @@ pub fn error(found: &Picture, expected: &Picture, size: usize) -> [f64; 2] {
     let covered = |k: usize| found[k][3] > 0.0;
     let whole = |k: usize| {
         let (x, y) = (k % size, k / size);
-        x > 0 && y > 0 && x + 1 < size && y + 1 < size
+        x > 0
+            && y > 0
+            && x + 1 < size
+            && y + 1 < size
             && [k, k - 1, k + 1, k - size, k + size].into_iter().all(covered)
     };
     let pixels: Vec<_> = (0..found.len()).filter(|&k| expected[k][3] > 0.0 && whole(k)).collect();

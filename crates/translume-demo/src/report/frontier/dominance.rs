@@ -6,10 +6,8 @@ use super::row::{Row, Truth};
 /// Errors at which times are compared.
 pub const LEVELS: [f64; 6] = [0.005, 0.01, 0.02, 0.05, 0.1, 0.2];
 
-/// The cheapest ways to keep within an error in a scene.
+/// The cheapest ways to keep within one of [`LEVELS`].
 pub struct Level<'a> {
-    pub scene: &'a str,
-    pub level: f64,
     pub dual: Option<&'a Row>,
     pub other: Option<&'a Row>,
 }
@@ -25,7 +23,8 @@ impl Level<'_> {
     }
 }
 
-pub fn levels<'a>(rows: &'a [Row], scene: &'a str, truth: Truth) -> Vec<Level<'a>> {
+/// One scene, level by level.
+pub fn levels<'a>(rows: &'a [Row], scene: &str, truth: Truth) -> Vec<Level<'a>> {
     let of = |level: f64, which: fn(Family) -> bool| {
         rows.iter()
             .filter(|row| row.scene == scene && !row.is_model && which(row.family))
@@ -34,12 +33,7 @@ pub fn levels<'a>(rows: &'a [Row], scene: &'a str, truth: Truth) -> Vec<Level<'a
     };
     LEVELS
         .into_iter()
-        .map(|level| Level {
-            scene,
-            level,
-            dual: of(level, Family::is_dual),
-            other: of(level, |family| !family.is_dual()),
-        })
+        .map(|level| Level { dual: of(level, Family::is_dual), other: of(level, |family| !family.is_dual()) })
         .collect()
 }
 
@@ -57,8 +51,7 @@ mod tests {
             example(Family::ScreenSpace, 3.0, 0.15),
             example(Family::AllPairs, 900.0, 0.001),
         ];
-        let won: Vec<bool> =
-            levels(&rows, "egg, raw", Truth::Converged).iter().map(Level::is_won).collect();
+        let won: Vec<bool> = levels(&rows, "egg, raw", Truth::Converged).iter().map(Level::is_won).collect();
         // .5 %: all pairs alone; 1 to 5 %: the dual tree; from 10 % on (the level .2) the picture's own space.
         assert_eq!(won, [false, true, true, true, true, false]);
         assert!(levels(&rows, "another", Truth::Converged).iter().all(Level::is_won));

@@ -18,9 +18,8 @@ pub fn compare(reference: &Picture, test: &Picture) -> Option<Flip> {
     if (reference.width, reference.height) != (test.width, test.height) {
         return None;
     }
-    let image = |picture: &Picture| {
-        FlipImageRgb8::with_data(picture.width, picture.height, &picture.to_srgb())
-    };
+    let image =
+        |picture: &Picture| FlipImageRgb8::with_data(picture.width, picture.height, &picture.to_srgb());
     let error = nv_flip::flip(image(reference), image(test), DEFAULT_PIXELS_PER_DEGREE);
     let map = Picture::from_bytes(test.width, &error.apply_color_lut(&nv_flip::magma_lut()).to_vec());
     Some(Flip { mean: FlipPool::from_image(&error).mean().into(), map })

@@ -30,40 +30,45 @@ pub struct Verdict {
 /// `picture`: radiance row by row.
 pub fn judge(truths: &Truths, profile: &str, picture: &[[f32; 3]]) -> Verdict {
     let quadrature =
-        truths.converged(profile).and_then(|truth| against(picture, truth, None, &truths.mask));
+        truths.converged(profile).and_then(|truth| against(&truths.sampled(picture), truth, None));
     let Some(traced) = &truths.traced else {
         return Verdict { quadrature, ..Verdict::default() };
     };
-    let error = Some(traced.error.as_slice());
+    let inside = |picture: &[[f64; 3]]| masked(picture, &truths.mask);
+    let (found, wanted, error) =
+        (masked(picture, &truths.mask), inside(&traced.radiance), inside(&traced.error));
     let shown = truths.shown(&traced.radiance).zip(truths.shown(picture));
     Verdict {
         quadrature,
-        total: against(picture, &traced.radiance, error, &truths.mask),
-        psnr: psnr(picture, &traced.radiance, &truths.mask),
+        total: against(&found, &wanted, Some(&error)),
+        psnr: psnr(&found, &wanted),
         flip: shown.and_then(|(reference, test)| flip::compare(&reference, &test)).map(|flip| flip.mean),
-        noise: noise(&traced.radiance, &traced.error, &truths.mask),
+        noise: noise(&wanted, &error),
     }
 }
 
-fn flat<T: Shown>(picture: &[T], mask: &[bool]) -> Vec<f64> {
-    let inside = picture.iter().zip(mask).filter(|(_, inside)| **inside);
-    inside.flat_map(|(pixel, _)| pixel.rgb()).collect()
+/// Pixels that the body fills.
+fn masked<T: Copy>(picture: &[T], mask: &[bool]) -> Vec<T> {
+    picture.iter().zip(mask).filter(|(_, inside)| **inside).map(|(pixel, _)| *pixel).collect()
 }
 
-/// `None` where nothing is to be compared, or the truth is dark.
+fn flat<T: Shown>(picture: &[T]) -> Vec<f64> {
+    picture.iter().flat_map(Shown::rgb).collect()
+}
+
+/// Of pixel and pixel. `error`: standard errors of the truth. `None` where nothing is to be compared, or the truth is dark.
 pub fn against<A: Shown, B: Shown>(
     picture: &[A],
     truth: &[B],
     error: Option<&[[f64; 3]]>,
-    mask: &[bool],
 ) -> Option<Against> {
-    let (found, wanted) = (flat(picture, mask), flat(truth, mask));
+    let (found, wanted) = (flat(picture), flat(truth));
     let figures = metrics::compare(&found, &wanted, None)?;
-    let mean = wanted.iter().sum::<f64>() / wanted.len() as f64;
+    let mean = mean(&wanted);
     if !(mean > 0.0) {
         return None;
     }
-    let own = error.map_or(0.0, |error| mean_square(&flat(error, mask)) / (mean * mean));
+    let own = error.map_or(0.0, |error| mean_square(&flat(error)) / (mean * mean));
     Some(Against {
         relative_rmse: (figures.relative_rmse.powi(2) - own).max(0.0).sqrt(),
         bias: figures.bias,
@@ -71,16 +76,19 @@ pub fn against<A: Shown, B: Shown>(
     })
 }
 
-fn psnr(picture: &[[f32; 3]], truth: &[[f64; 3]], mask: &[bool]) -> Option<f64> {
-    let (found, wanted) = (flat(picture, mask), flat(truth, mask));
+fn psnr(picture: &[[f32; 3]], truth: &[[f64; 3]]) -> Option<f64> {
+    let (found, wanted) = (flat(picture), flat(truth));
     let peak = wanted.iter().copied().fold(0.0, f64::max);
     metrics::psnr(&found, &wanted, None, peak).filter(|psnr| psnr.is_finite())
 }
 
-fn noise(truth: &[[f64; 3]], error: &[[f64; 3]], mask: &[bool]) -> Option<f64> {
-    let wanted = flat(truth, mask);
-    let mean = wanted.iter().sum::<f64>() / wanted.len().max(1) as f64;
-    (mean > 0.0).then(|| mean_square(&flat(error, mask)).sqrt() / mean)
+fn noise(truth: &[[f64; 3]], error: &[[f64; 3]]) -> Option<f64> {
+    let mean = mean(&flat(truth));
+    (mean > 0.0).then(|| mean_square(&flat(error)).sqrt() / mean)
+}
+
+fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len().max(1) as f64
 }
 
 fn mean_square(values: &[f64]) -> f64 {
@@ -93,16 +101,16 @@ mod tests {
 
     #[test]
     fn noise_of_the_truth_is_taken_off() {
-        let (picture, truth) = ([[1.1_f32; 3]; 4], [[1.0_f64; 3]; 4]);
-        let mask = [true, true, true, false];
-        let plain = against(&picture, &truth, None, &mask).unwrap();
+        let (picture, truth) = ([[1.1_f32; 3]; 3], [[1.0_f64; 3]; 3]);
+        let plain = against(&picture, &truth, None).unwrap();
         // f32 holds 1.1 to 2e-8.
         assert!((plain.relative_rmse - 0.1).abs() < 1e-6 && (plain.bias - 0.1).abs() < 1e-6);
-        let error = [[0.06; 3], [0.06; 3], [0.06; 3], [9.0; 3]];
-        let less = against(&picture, &truth, Some(&error), &mask).unwrap();
+        let error = [[0.06; 3]; 3];
+        let less = against(&picture, &truth, Some(&error)).unwrap();
         assert!((less.relative_rmse - 0.08).abs() < 1e-6, "√(.1² − .06²): {less:?}");
-        assert!((noise(&truth, &error, &mask).unwrap() - 0.06).abs() < 1e-12);
-        assert_eq!(against(&picture, &[[0.0_f64; 3]; 4], None, &mask), None);
-        assert_eq!(against(&picture, &truth, None, &[false; 4]), None);
+        assert!((noise(&truth, &error).unwrap() - 0.06).abs() < 1e-12);
+        assert_eq!(against(&picture, &[[0.0_f64; 3]; 3], None), None);
+        assert_eq!(against::<[f32; 3], [f64; 3]>(&[], &[], None), None);
+        assert_eq!(masked(&[1, 2, 3], &[true, false, true]), [1, 3]);
     }
 }

@@ -90,11 +90,8 @@ impl Study<'_> {
         if let Some(traced) = &truths.traced {
             log::info!("{}: {} paths a pixel in {:.1} s", stage.name, traced.samples, traced.seconds);
         }
-        let repeats = if self.quick {
-            Repeats { warm_up: 0, timed: 1 }
-        } else {
-            Repeats { warm_up: 1, timed: 3 }
-        };
+        let repeats =
+            if self.quick { Repeats { warm_up: 0, timed: 1 } } else { Repeats { warm_up: 1, timed: 3 } };
         let mut shot = Shot::new(self.gpu, self.translume, &stage, repeats);
         let mut kept = Vec::new();
         let first = rows.len();
@@ -113,7 +110,8 @@ impl Study<'_> {
         Ok(Section {
             summary: summary(&truths, own),
             pictures: self.pictures(&stage, &truths, &kept)?,
-            plot: plot::svg(&own.iter().collect::<Vec<_>>(), &stage.name).map_err(|problem| self.blame(problem))?,
+            plot: plot::svg(&own.iter().collect::<Vec<_>>(), &stage.name)
+                .map_err(|problem| self.blame(problem))?,
             name: stage.name,
             purpose: stage.purpose,
         })
@@ -136,8 +134,8 @@ impl Study<'_> {
         prepare_folder(&folder)?;
         let mut all = Vec::new();
         let traced = truths.traced.as_ref().and_then(|traced| truths.shown(&traced.radiance));
-        let integral = truths.converged(default_profile()).and_then(|radiance| truths.shown(radiance));
-        let reference = traced.clone().or_else(|| integral.clone());
+        let best = kept.iter().find(|(family, ..)| *family == Family::Dual);
+        let reference = traced.clone().or_else(|| truths.shown(&best?.2));
         let mut add = |caption: String, name: &str, picture: &Picture, with_difference: bool| {
             let file = |ending: &str| format!("{name}{ending}.png");
             Output::new(&folder.join(file("")))?.write(std::slice::from_ref(picture))?;
@@ -152,9 +150,6 @@ impl Study<'_> {
         };
         if let Some(picture) = &traced {
             add("paths".to_owned(), "paths", picture, false)?;
-        }
-        if let Some(picture) = &integral {
-            add(format!("integral of {}", default_profile()), "integral", picture, traced.is_some())?;
         }
         let pictured = [Family::Dual, Family::Pattern, Family::ShadowMap, Family::ScreenSpace];
         for (family, setting, radiance) in kept.iter().filter(|(family, ..)| pictured.contains(family)) {
@@ -192,9 +187,11 @@ fn summary(truths: &Truths, rows: &[Row]) -> Summary {
         .filter(of_default)
         .find(|row| row.setting == format!("{size}², {tolerance}"))
         .or_else(|| rows.iter().rfind(of_default));
-    let model = truths.traced.as_ref().zip(truths.converged(default_profile())).and_then(|(traced, integral)| {
-        judge::against(integral, &traced.radiance, Some(&traced.error), &truths.mask)
-    });
+    let model =
+        truths.traced.as_ref().zip(truths.converged(default_profile())).and_then(|(traced, integral)| {
+            let [radiance, error] = [&traced.radiance, &traced.error].map(|picture| truths.sampled(picture));
+            judge::against(integral, &radiance, Some(&error))
+        });
     let verdict = default.map(|row| row.verdict.clone()).unwrap_or_default();
     Summary {
         quadrature: verdict.quadrature,

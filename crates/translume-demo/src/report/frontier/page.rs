@@ -98,7 +98,8 @@ fn summary_table(sections: &[Section]) -> String {
     text += "</table></div>\n";
     for Section { name, summary, .. } in sections {
         if let Some(reason) = &summary.untraced {
-            let _ = writeln!(text, "<p class=\"dim\">{}: no paths, for {}.</p>", escaped(name), escaped(reason));
+            let _ =
+                writeln!(text, "<p class=\"dim\">{}: no paths, for {}.</p>", escaped(name), escaped(reason));
         }
     }
     text
@@ -237,7 +238,9 @@ mod tests {
             plot: "<svg></svg>".to_owned(),
         };
         let page = html(&[section], &rows, "<svg></svg>", "soft <slow>");
-        for word in ["egg, raw", "raw &amp; whole", "a reason", "egg/integral.png", "soft &lt;slow&gt;", "0.40"] {
+        for word in
+            ["egg, raw", "raw &amp; whole", "a reason", "egg/integral.png", "soft &lt;slow&gt;", "0.40"]
+        {
             assert!(page.contains(word), "{word}");
         }
         assert!(page.contains("<td class=\"good\">10 : – ms</td>"), "10 ms at .5 %");

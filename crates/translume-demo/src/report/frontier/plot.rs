@@ -119,7 +119,9 @@ mod tests {
         let rows = [example(Family::Dual, 10.0, 0.01), example(Family::ScreenSpace, 2.0, 0.3)];
         let rows: Vec<&Row> = rows.iter().collect();
         let text = svg(&rows, "egg").unwrap();
-        assert!(text.starts_with("<svg") && text.contains("dual tree") && text.contains("screen-space diffusion"));
+        assert!(
+            text.starts_with("<svg") && text.contains("dual tree") && text.contains("screen-space diffusion")
+        );
         let (width, buffer) = pixels(&rows, "egg").unwrap();
         assert_eq!(buffer.len() % (3 * width as usize), 0);
         let dark = |buffer: &[u8]| buffer.iter().filter(|c| **c < 128).count();

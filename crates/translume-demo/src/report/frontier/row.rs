@@ -19,7 +19,13 @@ pub struct Row {
 }
 
 impl Row {
-    pub fn new(scene: &str, entrant: &Entrant, is_model: bool, taken: &super::shot::Taken, verdict: Verdict) -> Self {
+    pub fn new(
+        scene: &str,
+        entrant: &Entrant,
+        is_model: bool,
+        taken: &super::shot::Taken,
+        verdict: Verdict,
+    ) -> Self {
         let atlas = match entrant.way {
             Way::Ours { atlas, .. } => Some(atlas),
             Way::Rival(_) => None,
@@ -124,6 +130,10 @@ mod tests {
         let line = text.lines().nth(1).unwrap();
         // Three fields hold a comma.
         assert_eq!(line.split(',').count(), columns + 2, "{line}");
-        assert!(line.starts_with("\"egg, raw\",one-sided tree,2,dipole,64,,2.0000,,0.010000,-0.005000,0.030000,,"));
+        assert!(
+            line.starts_with(
+                "\"egg, raw\",one-sided tree,2,dipole,64,,2.0000,,0.010000,-0.005000,0.030000,,"
+            )
+        );
     }
 }

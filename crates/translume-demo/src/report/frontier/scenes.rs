@@ -92,9 +92,13 @@ mod tests {
     #[test]
     fn every_scene_of_our_own_can_be_read() {
         for (name, text) in OWN.iter().chain(&SCANS) {
-            let scene = Scene::parse(text, Path::new("scene.json")).unwrap_or_else(|error| panic!("{name}: {error}"));
+            let scene =
+                Scene::parse(text, Path::new("scene.json")).unwrap_or_else(|error| panic!("{name}: {error}"));
             assert_eq!(scene.name, *name);
-            assert!(scene.lights.is_some_and(|lights| !lights.is_empty()) && scene.camera.is_some(), "{name}");
+            assert!(
+                scene.lights.is_some_and(|lights| !lights.is_empty()) && scene.camera.is_some(),
+                "{name}"
+            );
         }
         assert!(Scene::parse("{", Path::new("scene.json")).is_err());
     }

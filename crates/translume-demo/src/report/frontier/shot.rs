@@ -5,7 +5,7 @@ use super::stage::Stage;
 use crate::error::Error;
 use crate::gpu::Gpu;
 use crate::report::bench::{PATIENCE, Repeats, median};
-use crate::report::scatter::method;
+use crate::report::method;
 use std::collections::BTreeMap;
 use std::time::Instant;
 use translume::{
@@ -49,11 +49,8 @@ const LEAST_ATLAS: u32 = 64;
 
 impl<'a> Shot<'a> {
     pub fn new(gpu: &'a Gpu, translume: &'a Translume, stage: &'a Stage, repeats: Repeats) -> Self {
-        let target = CompositeTarget {
-            format: COLOUR,
-            depth: Some((DEPTH, wgpu::CompareFunction::Less)),
-            samples: 1,
-        };
+        let target =
+            CompositeTarget { format: COLOUR, depth: Some((DEPTH, wgpu::CompareFunction::Less)), samples: 1 };
         let [width, height] = stage.pixels();
         let texture = |format| {
             gpu.device.create_texture(&wgpu::TextureDescriptor {
@@ -88,7 +85,9 @@ impl<'a> Shot<'a> {
             }
             Way::Rival(rival) => {
                 let known = |light: &Light| matches!(light, Light::Directional(_) | Light::Point(_));
-                if !self.stage.lights.iter().all(known) || self.stage.lights.len() > translume_rivals::MAX_LIGHTS {
+                if !self.stage.lights.iter().all(known)
+                    || self.stage.lights.len() > translume_rivals::MAX_LIGHTS
+                {
                     return Ok(None);
                 }
                 self.rival(*rival).map(Some)
@@ -215,7 +214,7 @@ impl<'a> Shot<'a> {
         self.frames += 1;
         let sign = if self.frames.is_multiple_of(2) { NUDGE } else { -NUDGE };
         let step = if moved { sign * self.stage.model.mesh.diagonal() } else { 0.0 };
-        let mut model = translume::Frame::default().model;
+        let mut model = Frame::default().model;
         model[3][0] = step;
         let frame = Frame {
             model,

@@ -9,6 +9,7 @@ use crate::scene::{Scene, SceneCamera, Shape};
 use translume::{Camera, Light, Medium};
 use translume_mesh::rig::Pose;
 use translume_mesh::{Atlas, AtlasOptions, Warp};
+use translume_reference::Surface;
 
 /// What is measured.
 pub struct Stage {
@@ -77,6 +78,30 @@ impl Stage {
 
     pub fn atlas(&self, size: u32) -> Result<Atlas, Error> {
         model::unwrap(&self.model.mesh, &AtlasOptions { size, ..Default::default() })
+    }
+
+    pub fn surface(&self) -> Surface {
+        let mm = f64::from(self.mm_per_unit);
+        translume_twin::surface(&self.model.mesh, &self.pose, self.warp, mm, self.flat_normals)
+    }
+
+    /// Lights that rays know.
+    pub fn twin_lights(&self) -> Vec<translume_reference::Light> {
+        let mm = f64::from(self.mm_per_unit);
+        self.lights.iter().filter_map(|light| translume_twin::light(light, mm)).collect()
+    }
+
+    pub fn twin_camera(&self) -> translume_reference::composite::Camera {
+        let SceneCamera { eye, target, up, fov_deg, width, height } = self.camera;
+        let mm = |p: [f32; 3]| p.map(|x| f64::from(x) * f64::from(self.mm_per_unit));
+        translume_reference::composite::Camera {
+            eye: mm(eye),
+            target: mm(target),
+            up: up.map(f64::from),
+            fov: f64::from(fov_deg).to_radians(),
+            width: width as usize,
+            height: height as usize,
+        }
     }
 
     pub fn pixels(&self) -> [u32; 2] {

@@ -33,7 +33,9 @@ const DOUBT: f64 = 0.3;
 
 impl Summary {
     pub fn dominant(&self) -> Dominant {
-        let (Some(quadrature), Some(model)) = (&self.quadrature, &self.model) else { return Dominant::Unknown };
+        let (Some(quadrature), Some(model)) = (&self.quadrature, &self.model) else {
+            return Dominant::Unknown;
+        };
         let doubt = DOUBT * self.noise.unwrap_or(0.0);
         match (quadrature.relative_rmse, model.relative_rmse) {
             (quadrature, model) if quadrature > model.max(doubt) => Dominant::Quadrature,
@@ -51,8 +53,13 @@ mod tests {
     fn the_larger_error_is_named_unless_noise_hides_it() {
         let against = |relative_rmse| Some(Against { relative_rmse, bias: 0.0, relative_p99: 0.0 });
         let dominant = |quadrature, model, noise| {
-            Summary { quadrature: against(quadrature), model: against(model), noise: Some(noise), ..Summary::default() }
-                .dominant()
+            Summary {
+                quadrature: against(quadrature),
+                model: against(model),
+                noise: Some(noise),
+                ..Summary::default()
+            }
+            .dominant()
         };
         assert_eq!(dominant(0.01, 0.2, 0.05), Dominant::Model);
         assert_eq!(dominant(0.05, 0.02, 0.01), Dominant::Quadrature);

@@ -1,10 +1,10 @@
 //! A body whose frames end with the scatter, and a stopwatch.
 
-use super::method;
 use super::scene::Scene;
 use crate::error::Error;
 use crate::gpu::Gpu;
 use crate::report::bench::{PATIENCE, Repeats, median};
+use crate::report::method;
 use std::time::Instant;
 use translume::{
     Body, BodyDescriptor, Casters, Frame, Lighting, Medium, Method, Profile, Region, Stage, Translume,

@@ -1,8 +1,8 @@
 //! One measurement, and all of them as CSV.
 
 use super::bench::Run;
-use super::method;
 use crate::report::csv::quoted;
+use crate::report::method;
 use translume::{Method, Profile};
 use translume_reference::metrics::Metrics;
 
