@@ -18,6 +18,8 @@ Examples:
   translume inspect creature teapot bunny.obj --table                  a line for each
   translume report --suite -o report                                   every method in every scene: a page for a browser
   translume report scene.json -o report                                the same of a scene of yours
+  translume profile --medium marble -o marble.json                     random walks, as exact as you have patience
+  translume render creature --medium marble --profile marble.json -o creature.png
   translume report --suite gather -o report                            error beside time of every kind of light
   translume report --suite scatter -o report                           and of every method
 
@@ -42,6 +44,9 @@ pub enum Command {
     /// Tell what a model holds and how it unwraps.
     #[command(after_help = EXAMPLES)]
     Inspect(Inspect),
+    /// Walk light through a flat half-space of a medium and write what returns, as a table for `render --profile`.
+    #[command(after_help = EXAMPLES)]
+    Profile(Profile),
     /// Measure speed and error against the CPU reference; writes tables and a plot.
     #[command(after_help = EXAMPLES)]
     Report(Report),
@@ -71,9 +76,10 @@ pub struct Render {
     /// Even out charts until every texel holds about the same area of the surface.
     #[arg(long)]
     pub even: bool,
-    /// Diffuse profile: dipole (the paper's formula to the letter), dipole-normalised, dipole-oriented (its sources below and above the surface), better-dipole, photon-beam, normalised-diffusion,
-    /// normalised-diffusion-searchlight; a dipole, the better one or photon-beam with -single adds light scattered once.
-    #[arg(long, value_name = "NAME", default_value = "dipole-normalised")]
+    /// Diffuse profile: half-space (random walks, tabulated), half-space-searchlight (where all light enters along the normal), dipole (the paper's formula to the letter), dipole-normalised, dipole-oriented (its sources below and above the surface), better-dipole, photon-beam, normalised-diffusion,
+    /// normalised-diffusion-searchlight; a dipole, the better one or photon-beam with -single adds light scattered once; or
+    /// a table that `translume profile` wrote, by the name of its .json.
+    #[arg(long, value_name = "NAME", default_value = "half-space")]
     pub profile: String,
     /// How the scatter sum is evaluated: dual (groups of texels at both ends), tree (each texel by itself), all-pairs (exact and slow), or
     /// pattern (57 samples around a texel of the atlas, tens of percent off: for comparison).
@@ -163,6 +169,13 @@ fn degrees(text: &str) -> Result<[f32; 2], String> {
     }
 }
 
+/// Three numbers with commas between.
+fn colour(text: &str) -> Result<[f32; 3], String> {
+    let numbers = text.split(',').map(|part| part.trim().parse().ok()).collect::<Option<Vec<f32>>>();
+    let three = numbers.and_then(|numbers| numbers.try_into().ok());
+    three.ok_or_else(|| "give three numbers with commas between, as 0.7,1.2,1.9".to_owned())
+}
+
 /// `translume inspect`.
 #[derive(Debug, Args)]
 pub struct Inspect {
@@ -178,6 +191,32 @@ pub struct Inspect {
     /// How the surface is laid out.
     #[command(flatten)]
     pub layout: Layout,
+}
+
+/// `translume profile`.
+#[derive(Debug, Args)]
+pub struct Profile {
+    /// Medium by name, as jade, wax, skimmilk, marble, skin1; a wrong name lists them all.
+    #[arg(long, value_name = "NAME")]
+    pub medium: Option<String>,
+    /// Reduced scattering coefficients in 1/mm, in place of those of the medium.
+    #[arg(long, value_name = "R,G,B", value_parser = colour)]
+    pub scattering: Option<[f32; 3]>,
+    /// Absorption coefficients in 1/mm, in place of those of the medium.
+    #[arg(long, value_name = "R,G,B", value_parser = colour)]
+    pub absorption: Option<[f32; 3]>,
+    /// Index of refraction, in place of that of the medium.
+    #[arg(long, value_name = "X")]
+    pub ior: Option<f32>,
+    /// How light enters: normal, or diffuse as under a uniform sky.
+    #[arg(long, value_name = "WAY", default_value = "diffuse", value_parser = ["normal", "diffuse"])]
+    pub entry: String,
+    /// Random walks for each channel.
+    #[arg(long, value_name = "N", default_value_t = 1_000_000, value_parser = clap::value_parser!(u64).range(1000..))]
+    pub photons: u64,
+    /// Table to write, .json; or a folder, in which it gets a name of its own and is left as it is if it is there already.
+    #[arg(short, long, value_name = "FILE|DIR")]
+    pub output: PathBuf,
 }
 
 /// The suite of every method in every scene.

@@ -9,6 +9,7 @@ mod inspect;
 mod model;
 mod motion;
 mod picture;
+mod profile;
 mod progress;
 mod render;
 mod report;
@@ -25,6 +26,7 @@ fn main() -> ExitCode {
     let result = match cli::Arguments::parse().command {
         cli::Command::Render(arguments) => render::run(&arguments),
         cli::Command::Inspect(arguments) => inspect::run(&arguments),
+        cli::Command::Profile(arguments) => profile::run(&arguments),
         cli::Command::Report(arguments) => report::run(&arguments),
     };
     match result {

@@ -10,11 +10,11 @@ use crate::picture::{Develop, Format, Output};
 use crate::scene::{Scene, SceneCamera, SceneLight};
 use crate::studio::Studio;
 use crate::timings::table;
-use crate::{model, progress};
+use crate::{model, profile, progress};
 use std::path::Path;
 use std::time::Instant;
 use translume::{
-    BodyDescriptor, Evaluate, Frame, Gloss, Light, Lighting, Medium, Method, Profile, ShadowOptions, View,
+    BodyDescriptor, Evaluate, Frame, Gloss, Light, Lighting, Medium, Method, ShadowOptions, View,
 };
 
 /// Everything a picture needs, in the units of the scene.
@@ -42,7 +42,7 @@ pub fn run(arguments: &Render) -> Result<(), Error> {
     if arguments.frames > 1 && output.format != Format::Png {
         return Err(Error::Option { option: "--frames", problem: "only a PNG can be animated".to_owned() });
     }
-    let profile = Profile::named(&arguments.profile)?;
+    let profile = profile::open(&arguments.profile)?;
     let method = method(arguments)?;
     let evaluate = evaluate(arguments)?;
     let gpu = Gpu::new()?;

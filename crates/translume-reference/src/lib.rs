@@ -3,6 +3,7 @@
 //! | module | what it computes |
 //! | --- | --- |
 //! | [`medium`], [`fresnel`], [`dipole`], [`profile`] | the optics: coefficients, exact Fresnel terms, diffuse reflectance profiles |
+//! | [`half_space`] | Monte Carlo of a half-space or slab, which profiles approximate |
 //! | [`surface`], [`lights`], [`environment`] | the scene: triangles with ray queries, and what illuminates them |
 //! | [`deform`] | positions and normals of a morphed pose |
 //! | [`gather`] | position, normal, live area and irradiance of every texel, shadows by ray casting |
@@ -24,6 +25,7 @@ pub mod dipole;
 pub mod environment;
 pub mod fresnel;
 pub mod gather;
+pub mod half_space;
 pub mod lights;
 pub mod medium;
 pub mod metrics;

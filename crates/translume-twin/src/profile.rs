@@ -28,6 +28,9 @@ pub fn profiles(profile: &Profile, medium: &Medium) -> Option<[Numeric; 3]> {
     Some([red?, green?, blue?])
 }
 
+/// For each channel: their totals are then known to some 0.3 %.
+const WALKS: u64 = 100_000;
+
 fn channel(medium: &Medium, index: usize) -> Channel {
     let [sigma_s_prime, sigma_a] = [medium.sigma_s_prime[index], medium.sigma_a[index]].map(f64::from);
     Channel { sigma_s_prime, sigma_a, ior: medium.ior.into() }
@@ -41,6 +44,10 @@ fn numeric(kind: &Profile, medium: &Medium, index: usize) -> Option<Numeric> {
         Profile::Dipole | Profile::DipoleNormalised => {
             let z = dipole.z[0];
             Numeric::new(|r| dipole.reflectance(r), dipole.sigma_tr, z, [1e-4 * z, 1e4 * z])
+        }
+        Profile::HalfSpace(entry) => {
+            let way = if *entry == translume::Entry::Normal { Entry::Normal } else { Entry::Diffuse };
+            profile::half_space(&colour, way, &profile::walks(&colour, way, WALKS).finish())
         }
         Profile::BetterDipole => profile::better_dipole(&colour),
         Profile::PhotonBeam => profile::photon_beam(&colour),

@@ -8,6 +8,7 @@
 
 mod desk;
 mod environment;
+mod profile;
 mod report;
 mod scatter;
 

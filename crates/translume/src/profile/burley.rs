@@ -1,7 +1,8 @@
 //! Normalised diffusion: two exponentials fitted to random walks in an index-matched half-space.
 
+use super::albedo::albedo;
 use super::channel::Channel;
-use super::half_space::{Entry, albedo};
+use super::half_space::Entry;
 use super::radial::Radial;
 use crate::{Error, Medium};
 use std::f64::consts::PI;

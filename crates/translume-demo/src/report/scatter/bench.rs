@@ -34,6 +34,8 @@ impl<'a> Bench<'a> {
         let subject = &scene.subject;
         let descriptor = BodyDescriptor {
             mm_per_unit: subject.mm_per_unit,
+            // The reference's all pairs and integral are the dipole's.
+            profile: Profile::DipoleNormalised,
             ..BodyDescriptor::new(&subject.model.mesh, &subject.atlas)
         };
         let body = translume.create_body(&gpu.device, &descriptor)?;

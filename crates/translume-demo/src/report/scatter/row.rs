@@ -76,7 +76,7 @@ impl Row {
     /// For tests: no figures, no time.
     #[cfg(test)]
     pub fn example(part: Part, method: Method) -> Self {
-        let case = Case { scene: "egg, raw", atlas: 512, medium: "wax", profile: Profile::default() };
+        let case = Case { scene: "egg, raw", atlas: 512, medium: "wax", profile: Profile::DipoleNormalised };
         let run = Run { exitance: vec![[1.0, 1.0, 1.0, 30.0]; 2], time_ms: 1.0, overflow: None };
         Self::new(part, &case, method, &run)
     }
