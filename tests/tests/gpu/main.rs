@@ -26,6 +26,7 @@ mod profiles;
 mod scatter;
 mod shadow;
 mod sky;
+mod stability;
 mod stages;
 mod timings;
 mod variation;

@@ -1,0 +1,1 @@
+//! What is broken must be noticed by every kind of check.

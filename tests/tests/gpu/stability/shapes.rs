@@ -1,0 +1,78 @@
+//! Hard cases of size, place and deformation.
+
+use super::demand::Demand::{Dark, Dimmer, Falling, Like, Limit};
+use super::media::scaled;
+use super::scene::{SHEET, Scene, USUAL, sun};
+use super::{Row, row};
+use glam::{Mat4, Vec3};
+use std::sync::Arc;
+use translume::Medium;
+use translume_mesh::{MorphTarget, builtin};
+use translume_tests::{Model, Pose};
+
+/// The ball with targets that gather it in a point, press it flat and pull it to four times its width.
+fn collapsing(weights: [f32; 3]) -> Scene {
+    let mut mesh = builtin::sphere([0.0; 3], 50.0, 3);
+    let deltas = |f: fn(&[f32; 3]) -> [f32; 3]| mesh.positions.iter().map(f).collect();
+    let targets: [(&str, Vec<[f32; 3]>); 3] = [
+        ("point", deltas(|p| p.map(|x| -x))),
+        ("flat", deltas(|p| [0.0, -p[1], 0.0])),
+        ("wide", deltas(|p| [3.0 * p[0], 0.0, 0.0])),
+    ];
+    mesh.targets = targets
+        .map(|(name, position_deltas)| MorphTarget { name: name.to_owned(), position_deltas })
+        .to_vec();
+    let pose = Pose { weights: weights.to_vec(), ..Pose::rest(3) };
+    Scene { model: Model::new(mesh, 32), pose, ..Scene::ball(USUAL).lit(&[sun()]) }
+}
+
+/// The same body in another unit: all lengths grow by `factor`, mean free paths too.
+fn resized(factor: f32) -> Scene {
+    Scene::ball(scaled(USUAL, 1.0 / factor)).lit(&[sun()]).with(|scene| scene.mm_per_unit *= factor)
+}
+
+/// Both sides of a sheet see the light that entered one of them as if they were it.
+fn as_above(_: &Scene, totals: [f64; 3]) -> [f64; 3] {
+    totals
+}
+
+pub fn rows() -> Vec<Row> {
+    let ball = || Scene::ball(USUAL).lit(&[sun()]);
+    let unscaled = |factor: f32| ball().with(|scene| scene.mm_per_unit *= factor);
+    let same_size = |bound| vec![Like(Box::new(ball()), 1.0, bound)];
+    let stretched = |scale: [f32; 3]| ball().moved(Mat4::from_scale(Vec3::from(scale)));
+    // A mean free path of 3 texels, which sees nothing of the gap.
+    let thin = Medium { ior: 1.0, ..scaled(USUAL, 1.0 / 3.0) };
+    // A mean free path of 2 texels; slabs of half of one to eight.
+    let thick = Medium { ior: 1.0, ..scaled(USUAL, 0.5) };
+    let slab = |mm: f32| Scene::sheets(thick, mm, false);
+    // Half of a texel: from here the edges are many mean free paths away.
+    let short = Medium { ior: 1.0, ..scaled(USUAL, 2.0) };
+    vec![
+        row("1 mm across, medium to scale", resized(0.1), same_size(1e-3)),
+        row("100 m across, medium to scale", resized(1e4), same_size(1e-3)),
+        row("1 mm across", unscaled(0.1), vec![Falling]),
+        row("100 m across", unscaled(1e4), vec![Falling]),
+        row("stretched fourfold", stretched([4.0, 1.0, 1.0]), vec![Falling]),
+        row("stretched fourfold by a target", collapsing([0.0, 0.0, 1.0]), vec![Falling]),
+        row("mirrored", stretched([-1.0, 1.0, 1.0]), vec![Falling]),
+        row("crushed to 10⁻⁶ of its height", stretched([1.0, 1e-6, 1.0]).with(|s| s.faces = 2.0), vec![]),
+        row("crushed flat by a target", collapsing([0.0, 1.0, 0.0]).with(|s| s.faces = 2.0), vec![]),
+        row("crushed to a point by a target", collapsing([1.0, 0.0, 0.0]), vec![Dark]),
+        row(
+            "receivers on top of sources: two sheets in one place, as one twice as bright",
+            Scene::sheets(thin, 0.0, true),
+            vec![Like(Box::new(Scene::sheets(thin, 1e4, true)), 2.0, 0.02)],
+        ),
+        row(
+            "two sheets 0.01 mm apart: each as bright as one alone",
+            Scene::sheets(short, 0.01, false),
+            vec![Limit(as_above, 0.02, 0.2 * f64::from(SHEET))],
+        ),
+        row(
+            "slabs of 1, 2, 4, 8, 16 mm: a thicker one transmits less",
+            slab(1.0),
+            vec![Dimmer([2.0, 4.0, 8.0, 16.0].map(slab).to_vec())],
+        ),
+    ]
+}

@@ -1,0 +1,201 @@
+//! The ways from a scene to its exitance.
+
+use super::scene::Scene;
+use std::collections::HashMap;
+use std::f64::consts::PI;
+use std::sync::{Mutex, OnceLock};
+use translume::{Entry, Evaluate, Frame, Medium, Method, Profile, View, readback};
+use translume_reference::converged::Converged;
+use translume_reference::profile::{self, Channel, Profile as _};
+use translume_reference::scatter;
+use translume_tests::{Fixture, dipoles, gpu, light, luminous, profiles};
+use translume_twin::medium as twin;
+
+/// How exitance is computed.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Way {
+    /// At every texel, with the dipole.
+    Method(&'static str, Method),
+    /// At every texel by the dual scatter, with one of `Profile::NAMES`.
+    Profile(&'static str, Profile),
+    /// At vertices or fragments, with the dipole.
+    Points(Evaluate),
+    /// The reference's own gather and sum, with the dipole, at some texels.
+    Pairs,
+    /// The reference's integral over the triangles, with the dipole, at fewer.
+    Converged,
+}
+
+/// A column of the table.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Column {
+    Methods,
+    Profiles,
+    Points,
+    Cpu,
+}
+
+impl Column {
+    pub const ALL: [Self; 4] = [Self::Methods, Self::Profiles, Self::Points, Self::Cpu];
+}
+
+/// What entered and what left.
+#[derive(Clone, Debug, Default)]
+pub struct Glow {
+    /// Irradiance of every texel.
+    pub entering: Vec<[f64; 3]>,
+    /// Exitance of each receiver.
+    pub leaving: Vec<[f64; 3]>,
+    /// Where the receivers are, mm; empty for fragments.
+    pub places: Vec<[f64; 3]>,
+}
+
+impl Way {
+    pub fn all() -> Vec<Self> {
+        let methods = [
+            ("all pairs", Method::AllPairs),
+            ("tree", Method::Tree { theta: 0.4 }),
+            ("dual", Method::default()),
+            ("pattern", Method::Pattern),
+        ];
+        let profiles = Profile::NAMES.iter().map(|(name, profile)| Self::Profile(name, profile.clone()));
+        let points = [Evaluate::PerVertex, Evaluate::PerFragment].map(Self::Points);
+        let methods = methods.into_iter().map(|(name, method)| Self::Method(name, method));
+        methods.chain(profiles).chain(points).chain([Self::Pairs, Self::Converged]).collect()
+    }
+
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Method(name, _) | Self::Profile(name, _) => name,
+            Self::Points(Evaluate::PerVertex) => "per vertex",
+            Self::Points(_) => "per fragment",
+            Self::Pairs => "CPU all pairs",
+            Self::Converged => "converged",
+        }
+    }
+
+    pub fn column(&self) -> Column {
+        match self {
+            Self::Method(..) => Column::Methods,
+            Self::Profile(..) => Column::Profiles,
+            Self::Points(_) => Column::Points,
+            Self::Pairs | Self::Converged => Column::Cpu,
+        }
+    }
+
+    pub fn profile(&self) -> Profile {
+        match self {
+            Self::Profile(_, profile) => profile.clone(),
+            _ => Profile::DipoleNormalised,
+        }
+    }
+
+    pub fn is_pattern(&self) -> bool {
+        matches!(self, Self::Method(_, Method::Pattern))
+    }
+
+    /// Computes a scene.
+    pub fn glow(&self, scene: &Scene) -> Glow {
+        let fixture = Fixture::new(&scene.model, |d| {
+            (d.medium, d.mm_per_unit, d.profile) = (scene.medium, scene.mm_per_unit, self.profile());
+            (d.shadows.resolution, d.shadows.direction_resolution) = (64, 32);
+            match self {
+                Self::Method(_, method) => d.method = *method,
+                Self::Points(place) => d.evaluate = *place,
+                _ => (),
+            }
+        });
+        match self {
+            Self::Pairs => pairs(&fixture, scene),
+            Self::Converged => converged(&fixture, scene),
+            _ => self.on_gpu(fixture, scene),
+        }
+    }
+
+    fn on_gpu(&self, mut fixture: Fixture, scene: &Scene) -> Glow {
+        let in_fragments = *self == Self::Points(Evaluate::PerFragment);
+        let view = View { camera: scene.shot.camera(), pixels: [scene.shot.size; 2] };
+        let view = in_fragments.then_some(view);
+        fixture.run(&Frame { view, ..scene.pose.frame(&scene.lights) });
+        let sources = fixture.sources();
+        let entering = luminous(&sources);
+        let texels = || sources.iter().map(|source| source.position).collect();
+        match self {
+            Self::Points(Evaluate::PerVertex) => {
+                let buffer = fixture.body.outputs().vertex_exitance.expect("exitance is at the vertices");
+                let values: Vec<[f32; 4]> = readback::buffer(&gpu().device, &gpu().queue, buffer).unwrap();
+                let leaving = values.into_iter().map(|[r, g, b, _]| [r, g, b].map(f64::from)).collect();
+                Glow { entering, leaving, places: fixture.positions() }
+            }
+            Self::Points(_) => {
+                // L = scale · F_t · B/π with F_t ≤ 1: no more than B, and B itself where η = 1.
+                let scale = PI / f64::from(fixture.body.profile().exit_scale(scene.medium.ior));
+                let shown = scene.shot.take(&fixture).into_iter().filter(|pixel| pixel[3] > 0.0);
+                let leaving = shown.map(|[r, g, b, _]| [r, g, b].map(|x| scale * f64::from(x))).collect();
+                Glow { entering, leaving, places: Vec::new() }
+            }
+            _ => Glow { entering, leaving: fixture.exitance(), places: texels() },
+        }
+    }
+}
+
+/// Some of the texels with an area, spread over the body.
+fn receivers(sources: &[translume_reference::gather::Source], count: usize) -> Vec<usize> {
+    let inside: Vec<usize> = (0..sources.len()).filter(|&k| sources[k].area > 0.0).collect();
+    // In a body without area any texel will do.
+    let inside = if inside.is_empty() { (0..sources.len()).collect() } else { inside };
+    (0..count).map(|k| inside[(2 * k + 1) * inside.len() / (2 * count)]).collect()
+}
+
+fn pairs(fixture: &Fixture, scene: &Scene) -> Glow {
+    let sources = fixture.twin_sources(&scene.pose, &scene.lights, 1);
+    let receivers = receivers(&sources, 48);
+    let leaving = scatter::all_pairs(&sources, &dipoles(&scene.medium), &receivers);
+    let places = receivers.iter().map(|&k| sources[k].position).collect();
+    Glow { entering: luminous(&sources), leaving, places }
+}
+
+fn converged(fixture: &Fixture, scene: &Scene) -> Glow {
+    let mm = f64::from(scene.mm_per_unit);
+    let sources = fixture.twin_sources(&scene.pose, &scene.lights, 1);
+    let places: Vec<_> = receivers(&sources, 6).iter().map(|&k| sources[k].position).collect();
+    let surface = fixture.twin_surface(&scene.pose);
+    let lights: Vec<_> = scene.lights.iter().map(|each| light(each, mm)).collect();
+    let edge = 0.1 * mm * f64::from(scene.model.mesh.diagonal());
+    let leaving = Converged::new(&surface, &lights, &twin(&scene.medium), edge).exitance(&places);
+    Glow { entering: luminous(&sources), leaving, places }
+}
+
+/// ∫ R_d dA over a plane, each channel: a matter of albedo and index alone.
+pub fn totals(profile: &Profile, medium: &Medium) -> [f64; 3] {
+    type Known = Mutex<HashMap<String, [f64; 3]>>;
+    static KNOWN: OnceLock<Known> = OnceLock::new();
+    let albedo: [f32; 3] = std::array::from_fn(|k| {
+        let [scattering, absorption] = [medium.sigma_s_prime[k], medium.sigma_a[k]];
+        scattering / (scattering + absorption)
+    });
+    let medium = &Medium { sigma_s_prime: albedo, sigma_a: albedo.map(|a| 1.0 - a), ior: medium.ior };
+    let key = format!("{profile:?} {medium:?}");
+    let known = KNOWN.get_or_init(Known::default);
+    if let Some(totals) = known.lock().unwrap().get(&key) {
+        return *totals;
+    }
+    let totals = match profile {
+        // Its two sources are those of the dipole.
+        Profile::Dipole | Profile::DipoleNormalised | Profile::DipoleOriented => {
+            dipoles(medium).map(|dipole| dipole.total())
+        }
+        Profile::HalfSpace(entry) => [0, 1, 2].map(|k| returned(medium, k, *entry)),
+        _ => profiles(profile, medium).map(|profile| profile.total()),
+    };
+    known.lock().unwrap().insert(key, totals);
+    totals
+}
+
+/// What 20,000 random walks return: known to 1 %.
+fn returned(medium: &Medium, index: usize, entry: Entry) -> f64 {
+    let [sigma_s_prime, sigma_a] = [medium.sigma_s_prime[index], medium.sigma_a[index]].map(f64::from);
+    let channel = Channel { sigma_s_prime, sigma_a, ior: medium.ior.into() };
+    let entry = if entry == Entry::Normal { profile::Entry::Normal } else { profile::Entry::Diffuse };
+    profile::half_space(&channel, entry, &profile::walks(&channel, entry, 20_000).finish()).total()
+}
