@@ -1,7 +1,7 @@
 //! Hard cases of light.
 
 use super::demand::Demand::{Dark, Falling, Like};
-use super::scene::{Scene, USUAL, sun};
+use super::scene::{Scene, USUAL};
 use super::{Row, row};
 use glam::{Mat4, Vec3};
 use translume::{Light, PointLight};
@@ -35,6 +35,5 @@ pub fn rows() -> Vec<Row> {
             ball().lit(&[lamp(near, 500.0), lamp(near, 500.0)]),
             vec![Like(Box::new(ball().lit(&[lamp(near, 1e3)])), 1.0, 1e-3)],
         ),
-        row("nothing but the sun behind the horizon of half the body", ball().lit(&[sun()]), vec![Falling]),
     ]
 }

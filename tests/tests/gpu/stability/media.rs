@@ -1,6 +1,6 @@
 //! Hard cases of the medium.
 
-use super::demand::Demand::{Alike, Dark, Falling, Like, Limit, Rising};
+use super::demand::Demand::{Alike, Dark, Falling, Like, Limit, Rising, Vanishing};
 use super::scene::{CELLS, Scene, USUAL, sky, sun};
 use super::{Row, row};
 use translume::Medium;
@@ -69,6 +69,7 @@ pub fn rows() -> Vec<Row> {
         ),
         row("α' = 0.1, 0.5, 0.9", Scene::ball(white([0.1, 0.5, 0.9], 1.3)), vec![Rising]),
         row("α' = 0.99, 0.9999, 1", Scene::ball(white([0.99, 0.9999, 1.0], 1.3)), vec![Rising]),
+        row("σ_a = 0, η = 1", Scene::ball(matched(absorbing([0.0; 3]))), vec![Alike(1e-6), Vanishing]),
         row("η = 1", Scene::ball(index(1.0)), vec![Falling]),
         row("η = 1 + 10⁻⁴", Scene::ball(index(1.0001)), vec![like(index(1.0), 0.01)]),
         row("η = 1 − 10⁻⁴", Scene::ball(index(0.9999)), vec![like(index(1.0), 0.01)]),
@@ -88,6 +89,10 @@ pub fn rows() -> Vec<Row> {
         .without(UNBOUNDED),
         row("mean free path 1/1000 texel", Scene::ball(scaled(USUAL, 1e3)), vec![Falling]),
         row("mean free path 1000 texels", Scene::ball(scaled(USUAL, 1e-3)), vec![Falling]),
-        row("mean free path 1000 texels, sky and sun", Scene::ball(scaled(USUAL, 1e-3)).lit(&[sky(), sun()]), vec![]),
+        row(
+            "mean free path 1000 texels, sky and sun",
+            Scene::ball(scaled(USUAL, 1e-3)).lit(&[sky(), sun()]),
+            vec![],
+        ),
     ]
 }

@@ -19,6 +19,8 @@ pub struct Scene {
     pub faces: f64,
     /// For fragments.
     pub shot: Shot,
+    /// Whether it is a ball of radius 50 units under the sky, which paths can be followed through.
+    pub round: bool,
 }
 
 /// Light of radiance 1 from everywhere. Without shadows, E is the same all over a convex body.
@@ -54,6 +56,7 @@ impl Scene {
             lights: vec![sky()],
             faces: 1.0,
             shot: Shot { eye: [60.0, 80.0, 230.0], target: [0.0; 3], fov: 0.5, size: 24 },
+            round: true,
         }
     }
 
@@ -66,6 +69,7 @@ impl Scene {
             mm_per_unit: 1.0,
             // Over the middle, a twelfth of the side to each side.
             shot: Shot { eye: [0.0, 2.0 * side, 0.2 * side], target: [0.0; 3], fov: 0.08, size: 16 },
+            round: false,
             ..Self::ball(medium)
         }
     }
@@ -86,11 +90,11 @@ impl Scene {
     }
 
     pub fn moved(self, model: Mat4) -> Self {
-        self.with(|scene| scene.pose.model = model)
+        self.with(|scene| (scene.pose.model, scene.round) = (model, false))
     }
 
     pub fn lit(self, lights: &[Light]) -> Self {
-        self.with(|scene| scene.lights = lights.to_vec())
+        self.with(|scene| (scene.lights, scene.round) = (lights.to_vec(), lights.is_empty()))
     }
 }
 
