@@ -6,13 +6,15 @@
 
 mod breaking;
 mod demand;
+mod frames;
+mod inputs;
 mod lights;
 mod media;
 mod scene;
 mod shapes;
 mod way;
 
-use demand::{Demand, Figure, brightest, excess, unsound};
+use demand::{Demand, Figure, brightest, excess, excess_in_all, unsound};
 use scene::Scene;
 use translume_tests::{Check, gpu, holds};
 use way::{Column, Way, ceiling};
@@ -29,6 +31,12 @@ struct Row {
     /// The ways whose figures have no bound here, with the reason in the row's comment: printed, finite and not negative, no more.
     unbounded: &'static [&'static str],
 }
+
+/// On a sphere of texels of 0.7 mean free paths: discs of two charts overlap along seams. Measured 9 %.
+const SEAMS: f64 = 0.1;
+
+/// Where texels are far wider than light wanders, the corner of three charts holds four discs at most. Measured 2.1.
+const CORNERS: f64 = 2.5;
 
 /// Interpolation in the kernel table: test `closure` measured 0.11 %.
 const ROUNDING: f64 = 2e-3;
@@ -69,9 +77,19 @@ impl Row {
         if !self.demands.iter().any(|demand| matches!(demand, Demand::Dark)) {
             let totals = ceiling(way, &self.scene.medium);
             let measured = excess(&glow, totals, self.scene.faces);
-            figures.push(figure("above the bound of energy", bounded([measured, self.allowance(way)])));
+            figures.push(figure(
+                "brightest, above the bound of energy",
+                bounded([measured, self.allowance(way)]),
+            ));
+            // Two faces light each other.
+            if let Some(measured) = excess_in_all(&glow, totals.map(|total| self.scene.faces * total)) {
+                figures.push(figure(
+                    "in all, above the bound of energy",
+                    bounded([measured, self.allowance_in_all(way)]),
+                ));
+            }
             let dark = f64::from(u8::from(brightest(&glow) == 0.0));
-            figures.push(figure("light to judge is missing", [dark, 0.0]));
+            figures.push(figure("light to judge is missing", bounded([dark, 0.0])));
         }
         for demand in self.demands.iter().filter(|demand| demand.applies(way)) {
             figures.push(figure(demand.name(), bounded(demand.measure(way, &self.scene, &glow))));
@@ -83,16 +101,22 @@ impl Row {
     fn allowance(&self, way: &Way) -> f64 {
         match way {
             Way::Method("all pairs", _) | Way::Pairs | Way::Converged => self.excess,
-            // Samples of equal weight wherever they land: it keeps no bound.
-            _ if way.is_pattern() => f64::INFINITY,
+            // Samples of one weight, wherever they land in space; and sources that land on other parts of the surface: neither has a bound.
+            _ if way.is_pattern() || way.is_oriented() => f64::INFINITY,
+            // At seams the middles of two discs may be in one place. Measured 0.78.
+            _ if way.is_peaked() && self.excess > ROUNDING => self.excess + 1.0,
             _ => self.excess + 0.05,
         }
+    }
+
+    /// The same of all that leaves.
+    fn allowance_in_all(&self, way: &Way) -> f64 {
+        if way.is_pattern() || way.is_oriented() { f64::INFINITY } else { self.excess.min(0.1) + 0.02 }
     }
 }
 
 /// Runs every row by every way; says of which figures there are too many.
-fn judge(title: &str, rows: &[Row]) -> Check {
-    let ways = Way::all();
+fn judge(title: &str, rows: &[Row], ways: &[Way]) -> Check {
     let mut figures = Vec::new();
     for row in rows {
         let start = std::time::Instant::now();
@@ -105,13 +129,16 @@ fn judge(title: &str, rows: &[Row]) -> Check {
     if problems.is_empty() { Ok(()) } else { Err(problems.join("\n")) }
 }
 
+/// What has a line only where it happens.
+const NEVER: [&str; 2] = ["values not finite or negative", "light to judge is missing"];
+
 /// A line per row and demand; in each column what comes closest to its bound.
 fn print(title: &str, figures: &[Figure]) {
     let mut lines = format!("| {title} | what must hold | methods | profiles | points | CPU |\n");
     lines += "| --- | --- | --- | --- | --- | --- |\n";
     let mut rest = figures.to_vec();
     // What never happens needs no line.
-    rest.retain(|figure| figure.bound > 0.0 || figure.check().is_err());
+    rest.retain(|figure| !NEVER.contains(&figure.demand) || figure.check().is_err());
     while let Some(Figure { row, demand, .. }) = rest.first().cloned() {
         let (line, others): (Vec<_>, Vec<_>) =
             rest.into_iter().partition(|figure| (figure.row, figure.demand) == (row, demand));
@@ -144,17 +171,17 @@ fn share(value: f64) -> String {
 
 #[test]
 fn media_hold() {
-    holds(judge("medium", &media::rows()));
+    holds(judge("medium", &media::rows(), &Way::all()));
 }
 
 #[test]
 fn lights_hold() {
-    holds(judge("light", &lights::rows()));
+    holds(judge("light", &lights::rows(), &Way::few()));
 }
 
 #[test]
 fn shapes_hold() {
-    holds(judge("shape", &shapes::rows()));
+    holds(judge("shape", &shapes::rows(), &Way::few()));
 }
 
 /// The adapter's name for the figures.

@@ -3,7 +3,7 @@
 use super::demand::Demand::{Dark, Dimmer, Falling, Like, Limit};
 use super::media::scaled;
 use super::scene::{SHEET, Scene, USUAL, sun};
-use super::{Row, row};
+use super::{CORNERS, Row, SEAMS, row};
 use glam::{Mat4, Vec3};
 use translume::Medium;
 use translume_mesh::{MorphTarget, builtin};
@@ -45,6 +45,7 @@ fn both(_: &Scene, totals: [f64; 3]) -> [f64; 3] {
 const CONVEX: f64 = 4.0;
 
 pub fn rows() -> Vec<Row> {
+    // The oriented dipole's sources stand off the surface, so that those of a thin or strongly bent body lie on its other side or beyond.
     let ball = || Scene::ball(USUAL).lit(&[sun()]);
     let unscaled = |factor: f32| ball().with(|scene| scene.mm_per_unit *= factor);
     let same_size = |bound| vec![Like(Box::new(ball()), 1.0, bound)];
@@ -56,17 +57,18 @@ pub fn rows() -> Vec<Row> {
     let short = Medium { sigma_s_prime: [0.8, 0.7, 0.5], sigma_a: [0.2, 0.3, 0.5], ior: 1.0 };
     let middle = 0.2 * f64::from(SHEET);
     vec![
-        row("1 mm across, medium to scale", resized(0.1), same_size(1e-3)),
-        row("100 m across, medium to scale", resized(1e4), same_size(1e-3)),
-        row("1 mm across", unscaled(0.1), vec![Falling]),
-        row("100 m across", unscaled(1e4), vec![Falling]),
-        row("stretched fourfold", stretched([4.0, 1.0, 1.0]).with(|s| s.faces = CONVEX), vec![Falling]),
+        row("1 mm across, medium to scale", resized(0.1), same_size(1e-3)).excess(SEAMS),
+        row("100 m across, medium to scale", resized(1e4), same_size(1e-3)).excess(SEAMS),
+        row("1 mm across", unscaled(0.1), vec![Falling]).unbounded(&["dipole-oriented"]),
+        row("100 m across", unscaled(1e4), vec![Falling]).excess(CORNERS).unbounded(&["dipole-oriented"]),
+        row("stretched fourfold", stretched([4.0, 1.0, 1.0]).with(|s| s.faces = CONVEX), vec![Falling])
+            .unbounded(&["dipole-oriented"]),
         row(
             "stretched fourfold by a target",
             collapsing([0.0, 0.0, 1.0]).with(|s| s.faces = CONVEX),
             vec![Falling],
         ),
-        row("mirrored", stretched([-1.0, 1.0, 1.0]), vec![Falling]),
+        row("mirrored", stretched([-1.0, 1.0, 1.0]), vec![Falling]).excess(SEAMS),
         row("crushed to 10⁻⁶ of its height", stretched([1.0, 1e-6, 1.0]).with(|s| s.faces = 2.0), vec![]),
         row("crushed flat by a target", collapsing([0.0, 1.0, 0.0]).with(|s| s.faces = 2.0), vec![]),
         row("crushed to a point by a target", collapsing([1.0, 0.0, 0.0]), vec![Dark])
@@ -80,11 +82,13 @@ pub fn rows() -> Vec<Row> {
             "two sheets 0.01 mm apart: each as bright as one alone",
             Scene::sheets(short, 0.01, false),
             vec![Limit(one, 0.02, middle)],
-        ),
+        )
+        .unbounded(&["dipole-oriented"]),
         row(
             "slabs of 1, 2, 4, 8, 16 mm: a thicker one transmits less",
             slab(1.0),
             vec![Dimmer([2.0, 4.0, 8.0, 16.0].map(slab).to_vec())],
-        ),
+        )
+        .unbounded(&["dipole-oriented"]),
     ]
 }

@@ -6,6 +6,7 @@ use std::f64::consts::PI;
 use std::sync::{Mutex, OnceLock};
 use translume::{Entry, Evaluate, Frame, Medium, Method, Profile, View, readback};
 use translume_reference::converged::Converged;
+use translume_reference::gather::Source;
 use translume_reference::path::{Ball, PathTracer, Volume};
 use translume_reference::profile::{self, Channel, Profile as _};
 use translume_reference::scatter;
@@ -51,6 +52,8 @@ pub struct Glow {
     pub leaving: Vec<[f64; 3]>,
     /// Where the receivers are, mm; empty for fragments.
     pub places: Vec<[f64; 3]>,
+    /// Area of each receiver, mm², where the receivers are all the texels; else empty.
+    pub areas: Vec<f64>,
 }
 
 impl Way {
@@ -65,6 +68,13 @@ impl Way {
         let points = [Evaluate::PerVertex, Evaluate::PerFragment].map(Self::Points);
         let methods = methods.into_iter().map(|(name, method)| Self::Method(name, method));
         methods.chain(profiles).chain(points).chain([Self::Pairs, Self::Converged, Self::Paths]).collect()
+    }
+
+    /// As [`all`](Self::all) with four profiles of different kinds, where the case is not one of the medium.
+    pub fn few() -> Vec<Self> {
+        let kinds = ["half-space", "dipole-oriented", "photon-beam-single", "normalised-diffusion"];
+        let kept = |way: &Self| !matches!(way, Self::Profile(name, _) if !kinds.contains(name));
+        Self::all().into_iter().filter(kept).collect()
     }
 
     pub fn name(&self) -> &'static str {
@@ -96,6 +106,17 @@ impl Way {
 
     pub fn is_pattern(&self) -> bool {
         matches!(self, Self::Method(_, Method::Pattern))
+    }
+
+    /// Whether its profile has no bound at r = 0. Where discs of texels overlap, what it sends from the middle of one counts.
+    pub fn is_peaked(&self) -> bool {
+        let smooth = ["dipole", "dipole-normalised", "dipole-oriented", "better-dipole"];
+        matches!(self, Self::Profile(name, _) if !smooth.contains(name))
+    }
+
+    /// Whether its sources lie off the surface.
+    pub fn is_oriented(&self) -> bool {
+        matches!(self, Self::Profile(_, Profile::DipoleOriented))
     }
 
     /// Whether it can compute a scene.
@@ -131,32 +152,41 @@ impl Way {
         fixture.run(&Frame { view, ..scene.pose.frame(&scene.lights) });
         let sources = fixture.sources();
         let entering = luminous(&sources);
-        let texels = || sources.iter().map(|source| source.position).collect();
         match self {
             Self::Points(Evaluate::PerVertex) => {
                 let buffer = fixture.body.outputs().vertex_exitance.expect("exitance is at the vertices");
                 let values: Vec<[f32; 4]> = readback::buffer(&gpu().device, &gpu().queue, buffer).unwrap();
                 let leaving = values.into_iter().map(|[r, g, b, _]| [r, g, b].map(f64::from)).collect();
-                Glow { entering, leaving, places: fixture.positions() }
+                Glow { entering, leaving, places: fixture.positions(), areas: Vec::new() }
             }
             Self::Points(_) => {
                 // L = scale · F_t · B/π with F_t ≤ 1: no more than B, and B itself where η = 1.
                 let scale = PI / f64::from(fixture.body.profile().exit_scale(scene.medium.ior));
                 let shown = scene.shot.take(&fixture).into_iter().filter(|pixel| pixel[3] > 0.0);
                 let leaving = shown.map(|[r, g, b, _]| [r, g, b].map(|x| scale * f64::from(x))).collect();
-                Glow { entering, leaving, places: Vec::new() }
+                Glow { entering, leaving, ..Glow::default() }
             }
-            _ => Glow { entering, leaving: fixture.exitance(), places: texels() },
+            _ => {
+                let places = sources.iter().map(|source| source.position).collect();
+                let areas = sources.iter().map(|source| source.area).collect();
+                Glow { entering, leaving: fixture.exitance(), places, areas }
+            }
         }
     }
 }
 
-/// Some of the texels with an area, spread over the body.
-fn receivers(sources: &[translume_reference::gather::Source], count: usize) -> Vec<usize> {
-    let inside: Vec<usize> = (0..sources.len()).filter(|&k| sources[k].area > 0.0).collect();
-    // In a body without area any texel will do.
-    let inside = if inside.is_empty() { (0..sources.len()).collect() } else { inside };
-    (0..count).map(|k| inside[(2 * k + 1) * inside.len() / (2 * count)]).collect()
+/// Some of the texels with an area: half of them spread over the body, half next to the middle.
+fn receivers(sources: &[Source], count: usize) -> Vec<usize> {
+    let mut inside: Vec<usize> = (0..sources.len()).filter(|&k| sources[k].area > 0.0).collect();
+    if inside.is_empty() {
+        // In a body without area any texel will do.
+        inside = (0..sources.len()).collect();
+    }
+    let mut picked: Vec<usize> = (0..count / 2).map(|k| inside[(2 * k + 1) * inside.len() / count]).collect();
+    let distance = |k: &usize| sources[*k].position.iter().map(|x| x * x).sum::<f64>();
+    inside.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
+    picked.extend(&inside[..count / 2]);
+    picked
 }
 
 fn pairs(fixture: &Fixture, scene: &Scene) -> Glow {
@@ -164,7 +194,7 @@ fn pairs(fixture: &Fixture, scene: &Scene) -> Glow {
     let receivers = receivers(&sources, 48);
     let leaving = scatter::all_pairs(&sources, &dipoles(&scene.medium), &receivers);
     let places = receivers.iter().map(|&k| sources[k].position).collect();
-    Glow { entering: luminous(&sources), leaving, places }
+    Glow { entering: luminous(&sources), leaving, places, areas: Vec::new() }
 }
 
 fn converged(fixture: &Fixture, scene: &Scene) -> Glow {
@@ -175,7 +205,7 @@ fn converged(fixture: &Fixture, scene: &Scene) -> Glow {
     let lights: Vec<_> = scene.lights.iter().map(|each| light(each, mm)).collect();
     let edge = 0.1 * mm * f64::from(scene.model.mesh.diagonal());
     let leaving = Converged::new(&surface, &lights, &twin(&scene.medium), edge).exitance(&places);
-    Glow { entering: luminous(&sources), leaving, places }
+    Glow { entering: luminous(&sources), leaving, places, areas: Vec::new() }
 }
 
 /// 4,096 paths: the mean is known to 1 to 2 %.
@@ -191,7 +221,7 @@ fn paths(scene: &Scene) -> Glow {
     let picture = trace.estimate().radiance;
     let mean = [0, 1, 2].map(|k| picture.iter().map(|pixel| pixel[k]).sum::<f64>() / picture.len() as f64);
     let shining = if scene.lights.is_empty() { 0.0 } else { PI };
-    Glow { entering: vec![[shining; 3]], leaving: vec![mean.map(|x| PI * x)], places: Vec::new() }
+    Glow { entering: vec![[shining; 3]], leaving: vec![mean.map(|x| PI * x)], ..Glow::default() }
 }
 
 /// The share of what enters that can come back at most, each channel: what paths have scattered at least once, else ∫ R_d dA over a plane.
