@@ -16,7 +16,6 @@ mod evaluate;
 mod furnace;
 mod gather;
 mod golden;
-mod hard_cases;
 mod hard_light;
 mod irradiance;
 mod layout;

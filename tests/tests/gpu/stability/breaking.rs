@@ -6,7 +6,8 @@ use super::demand::{
 };
 use super::scene::{Scene, USUAL, sky};
 use super::way::{Column, Glow, Way};
-use super::{ROUNDING, SEAMS, judge, media, row};
+use super::{ROUNDING, SEAMS, judge, row};
+use translume::Medium;
 use translume_tests::{Check, holds, notices};
 
 fn check(measured: f64, bound: f64) -> Check {
@@ -75,8 +76,7 @@ fn another_limit_is_noticed() {
     tells(|g| off(g, TOTALS, 1.0), 0.01, &[dim.clone(), broken(|g| g.places[0] = [9.0; 3])]);
     // Outside of the reach it may be what it likes.
     holds(check(off(&broken(|g| g.leaving[1][1] *= 0.98), TOTALS, 1.0), 0.01));
-    tells(|g| apart(g, &good(), 1.0), 1e-3, &[dim, broken(|g| g.leaving.truncate(1))]);
-    notices(check(apart(&good(), &good(), 1.01), 1e-3));
+    tells(|g| apart(g, &good()), 1e-3, &[dim, broken(|g| g.leaving.truncate(1))]);
 }
 
 #[test]
@@ -99,7 +99,8 @@ fn a_wrong_row_is_noticed() {
     notices(judged(Demand::Rising));
     notices(judged(Demand::Dark));
     notices(judged(Demand::Alike(0.01)));
-    notices(judged(Demand::Like(Box::new(Scene::ball(media::scaled(USUAL, 1.05))), 1.0, 0.01)));
+    let darker = Scene::ball(Medium { sigma_a: [0.031, 0.2, 0.4], ..USUAL });
+    notices(judged(Demand::Like("another medium", Box::new(darker), 1e-3)));
     notices(judged(Demand::Limit(|_, totals| totals, 0.01, 10.0)));
     notices(judge("broken", &[row("wrong", ball(), vec![]).excess(-0.5)], &ways));
     let slabs = [8.0, 4.0].map(|mm| Scene::sheets(USUAL, mm, false));

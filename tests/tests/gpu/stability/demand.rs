@@ -17,8 +17,8 @@ pub enum Demand {
     Falling,
     /// The channels are the same but for this share.
     Alike(f64),
-    /// Exitance is that of another scene times a factor, but for this relative RMSE.
-    Like(Box<Scene>, f64, f64),
+    /// Exitance is that of another scene, which the words tell, but for this relative RMSE.
+    Like(&'static str, Box<Scene>, f64),
     /// Exitance over the largest irradiance is so much for a profile of these totals, but for this share, within so many mm of the origin.
     Limit(fn(&Scene, [f64; 3]) -> [f64; 3], f64, f64),
     /// A white body vanishes in a white sky. Only paths know that: the other ways take a ball for flat.
@@ -98,10 +98,10 @@ pub fn unlike(glow: &Glow) -> f64 {
     each.map(f64::abs).fold(0.0, f64::max)
 }
 
-/// Relative RMSE of a glow against another times `factor`.
-pub fn apart(glow: &Glow, other: &Glow, factor: f64) -> f64 {
-    let expected: Vec<_> = other.leaving.iter().map(|value| value.map(|x| factor * x)).collect();
-    if glow.leaving.len() == expected.len() { relative_rmse(&glow.leaving, &expected) } else { f64::NAN }
+/// Relative RMSE of a glow against another.
+pub fn apart(glow: &Glow, other: &Glow) -> f64 {
+    let alike = glow.leaving.len() == other.leaving.len();
+    if alike { relative_rmse(&glow.leaving, &other.leaving) } else { f64::NAN }
 }
 
 /// The largest relative difference from what is expected, at places within `reach` mm of the origin.
@@ -134,7 +134,7 @@ impl Demand {
             Self::Rising => "grows with albedo",
             Self::Falling => "falls with absorption",
             Self::Alike(_) => "continuous",
-            Self::Like(..) => "as the limit",
+            Self::Like(words, ..) => words,
             Self::Limit(..) => "equal to the limit",
             Self::Vanishing => "as bright as the sky",
             Self::Dimmer(_) => "falls with thickness",
@@ -167,7 +167,7 @@ impl Demand {
             Self::Rising => [against_order(glow, [0, 1, 2]), rounding + noise],
             Self::Falling => [against_order(glow, [2, 1, 0]), rounding + noise],
             Self::Alike(bound) => [unlike(glow), bound + noise],
-            Self::Like(other, factor, bound) => [apart(glow, &way.glow(other), *factor), bound + noise],
+            Self::Like(_, other, bound) => [apart(glow, &way.glow(other)), bound + noise],
             Self::Limit(limit, bound, reach) => {
                 let expected = limit(scene, ceiling(way, &scene.medium));
                 [off(glow, expected, *reach), bound + peak]

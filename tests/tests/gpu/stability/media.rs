@@ -56,13 +56,15 @@ pub fn rows() -> Vec<Row> {
     // are not many mean free paths thick, what it mirrors lands on the other side.
     // Points are right only where light wanders further than a texel is wide.
     let matched = |medium: Medium| Medium { ior: 1.0, ..medium };
-    let like = |medium: Medium, bound: f64| Like(Box::new(Scene::ball(medium)), 1.0, bound);
+    let like = |words, ior| Like(words, Box::new(Scene::ball(index(ior))), 0.01);
     let middle = 0.1 * f64::from(CELLS);
     vec![
         row("as usual", Scene::ball(USUAL), vec![Falling]).excess(SEAMS),
-        row("σ_a = 0", Scene::ball(absorbing([0.0; 3])), vec![Alike(1e-6)]),
-        row("σ_a = 0, 10⁻¹², 10⁻⁹ σ_s'", Scene::ball(absorbing([0.0, 1e-12, 1e-9])), vec![Alike(1e-3)]),
-        row("σ_a = 0, 0.1, 1 σ_s'", Scene::ball(absorbing([0.0, 0.1, 1.0])), vec![Falling]).excess(0.35),
+        row("σ_a = 0, 10⁻¹², 10⁻⁹ σ_s'", Scene::ball(absorbing([0.0, 1e-12, 1e-9])), vec![Alike(1e-3)])
+            .excess(SEAMS),
+        row("σ_a = 0, 0.1, 1 σ_s'", Scene::ball(absorbing([0.0, 0.1, 1.0])), vec![Falling])
+            .excess(0.35)
+            .unbounded(&["dipole-oriented"]),
         row("σ_s' = 0", Scene::ball(Medium { sigma_s_prime: [0.0; 3], ..USUAL }), vec![Dark]),
         row(
             "σ_s' = σ_a = 0",
@@ -71,10 +73,15 @@ pub fn rows() -> Vec<Row> {
         ),
         row("α' = 0.1, 0.5, 0.9", Scene::ball(white([0.1, 0.5, 0.9], 1.3)), vec![Rising]).excess(SEAMS),
         row("α' = 0.99, 0.9999, 1", Scene::ball(white([0.99, 0.9999, 1.0], 1.3)), vec![Rising]).excess(SEAMS),
-        row("σ_a = 0, η = 1", Scene::ball(matched(absorbing([0.0; 3]))), vec![Alike(1e-6), Vanishing]),
-        row("η = 1", Scene::ball(index(1.0)), vec![Falling]).excess(SEAMS),
-        row("η = 1 + 10⁻⁴", Scene::ball(index(1.0001)), vec![like(index(1.0), 0.01)]).excess(SEAMS),
-        row("η = 1 − 10⁻⁴", Scene::ball(index(0.9999)), vec![like(index(1.0), 0.01)]).excess(SEAMS),
+        row("σ_a = 0, η = 1", Scene::ball(matched(absorbing([0.0; 3]))), vec![Alike(1e-6), Vanishing])
+            .excess(SEAMS),
+        // The dipole's fitted F_dr misses 0 at 1 by 0.0016.
+        row(
+            "η = 1",
+            Scene::ball(index(1.0)),
+            vec![Falling, like("as η = 1 + 10⁻⁴", 1.0001), like("as η = 1 − 10⁻⁴", 0.9999)],
+        )
+        .excess(SEAMS),
         row("η = 0.8", Scene::ball(index(0.8)), vec![Falling]).excess(SEAMS),
         row("η = 0.5", Scene::ball(index(0.5)), vec![Falling]).excess(SEAMS),
         row("η = 2.4", Scene::ball(index(2.4)), vec![Falling]).excess(SEAMS),

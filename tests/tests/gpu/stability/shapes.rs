@@ -5,9 +5,9 @@ use super::media::scaled;
 use super::scene::{SHEET, Scene, USUAL, sun};
 use super::{CORNERS, Row, SEAMS, row};
 use glam::{Mat4, Vec3};
-use translume::Medium;
+use translume::{Light, Medium};
 use translume_mesh::{MorphTarget, builtin};
-use translume_tests::{Model, Pose};
+use translume_tests::{Model, Pose, sphere_with};
 
 /// The ball with targets that gather it in a point, press it flat and pull it to four times its width.
 fn collapsing(weights: [f32; 3]) -> Scene {
@@ -48,7 +48,6 @@ pub fn rows() -> Vec<Row> {
     // The oriented dipole's sources stand off the surface, so that those of a thin or strongly bent body lie on its other side or beyond.
     let ball = || Scene::ball(USUAL).lit(&[sun()]);
     let unscaled = |factor: f32| ball().with(|scene| scene.mm_per_unit *= factor);
-    let same_size = |bound| vec![Like(Box::new(ball()), 1.0, bound)];
     let stretched = |scale: [f32; 3]| ball().moved(Mat4::from_scale(Vec3::from(scale)));
     // A mean free path of 2 texels; slabs of half of one to eight.
     let thick = Medium { ior: 1.0, ..scaled(USUAL, 0.5) };
@@ -56,9 +55,18 @@ pub fn rows() -> Vec<Row> {
     // A texel, and absorbing: from the middle the edges are out of sight.
     let short = Medium { sigma_s_prime: [0.8, 0.7, 0.5], sigma_a: [0.2, 0.3, 0.5], ior: 1.0 };
     let middle = 0.2 * f64::from(SHEET);
+    let like = |words, factor| Like(words, Box::new(resized(factor)), 1e-3);
+    let small = |lights: &[Light]| {
+        let lights = lights.to_vec();
+        ball().with(|scene| (scene.model, scene.lights) = (sphere_with(16), lights))
+    };
     vec![
-        row("1 mm across, medium to scale", resized(0.1), same_size(1e-3)).excess(SEAMS),
-        row("100 m across, medium to scale", resized(1e4), same_size(1e-3)).excess(SEAMS),
+        row(
+            "10 mm across, and 1 mm or 100 m with the mean free path to scale",
+            resized(1.0),
+            vec![Falling, like("as 1 mm across", 0.1), like("as 100 m across", 1e4)],
+        )
+        .excess(SEAMS),
         row("1 mm across", unscaled(0.1), vec![Falling]).unbounded(&["dipole-oriented"]),
         row("100 m across", unscaled(1e4), vec![Falling]).excess(CORNERS).unbounded(&["dipole-oriented"]),
         row("stretched fourfold", stretched([4.0, 1.0, 1.0]).with(|s| s.faces = CONVEX), vec![Falling])
@@ -73,6 +81,9 @@ pub fn rows() -> Vec<Row> {
         row("crushed flat by a target", collapsing([0.0, 1.0, 0.0]).with(|s| s.faces = 2.0), vec![]),
         row("crushed to a point by a target", collapsing([1.0, 0.0, 0.0]), vec![Dark])
             .without(&["per fragment"]),
+        // Few and wide texels, of which most lie on a seam.
+        row("atlas of 16²", small(&[sun()]), vec![Falling]).excess(CORNERS),
+        row("atlas of 16², no light", small(&[]), vec![Dark]),
         row(
             "receivers on top of sources: two lit sheets in one place, twice as bright as one",
             Scene::sheets(short, 0.0, true),

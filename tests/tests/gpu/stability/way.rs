@@ -6,11 +6,10 @@ use std::f64::consts::PI;
 use std::sync::{Mutex, OnceLock};
 use translume::{Entry, Evaluate, Frame, Medium, Method, Profile, View, readback};
 use translume_reference::converged::Converged;
-use translume_reference::gather::Source;
 use translume_reference::path::{Ball, PathTracer, Volume};
 use translume_reference::profile::{self, Channel, Profile as _};
 use translume_reference::scatter;
-use translume_tests::{Fixture, Shot, dipoles, gpu, light, luminous, profiles};
+use translume_tests::{Fixture, Model, Shot, dipoles, gpu, light, luminous, profiles};
 use translume_twin::medium as twin;
 
 /// How exitance is computed.
@@ -175,15 +174,15 @@ impl Way {
     }
 }
 
-/// Some of the texels with an area: half of them spread over the body, half next to the middle.
-fn receivers(sources: &[Source], count: usize) -> Vec<usize> {
-    let mut inside: Vec<usize> = (0..sources.len()).filter(|&k| sources[k].area > 0.0).collect();
-    if inside.is_empty() {
-        // In a body without area any texel will do.
-        inside = (0..sources.len()).collect();
-    }
+/// Some of the texels with an area, whatever the pose: half of them spread over the body, half next to the origin.
+fn receivers(model: &Model, count: usize) -> Vec<usize> {
+    let texels = &model.atlas.texels;
+    let mut inside: Vec<usize> = (0..texels.len()).filter(|&k| texels[k].area > 0.0).collect();
     let mut picked: Vec<usize> = (0..count / 2).map(|k| inside[(2 * k + 1) * inside.len() / count]).collect();
-    let distance = |k: &usize| sources[*k].position.iter().map(|x| x * x).sum::<f64>();
+    let distance = |k: &usize| {
+        let at = texels[*k].interpolate(model.mesh.corners(texels[*k].triangle as usize));
+        at.iter().map(|x| x * x).sum::<f32>()
+    };
     inside.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
     picked.extend(&inside[..count / 2]);
     picked
@@ -191,7 +190,7 @@ fn receivers(sources: &[Source], count: usize) -> Vec<usize> {
 
 fn pairs(fixture: &Fixture, scene: &Scene) -> Glow {
     let sources = fixture.twin_sources(&scene.pose, &scene.lights, 1);
-    let receivers = receivers(&sources, 48);
+    let receivers = receivers(&scene.model, 48);
     let leaving = scatter::all_pairs(&sources, &dipoles(&scene.medium), &receivers);
     let places = receivers.iter().map(|&k| sources[k].position).collect();
     Glow { entering: luminous(&sources), leaving, places, areas: Vec::new() }
@@ -200,7 +199,7 @@ fn pairs(fixture: &Fixture, scene: &Scene) -> Glow {
 fn converged(fixture: &Fixture, scene: &Scene) -> Glow {
     let mm = f64::from(scene.mm_per_unit);
     let sources = fixture.twin_sources(&scene.pose, &scene.lights, 1);
-    let places: Vec<_> = receivers(&sources, 6).iter().map(|&k| sources[k].position).collect();
+    let places: Vec<_> = receivers(&scene.model, 6).iter().map(|&k| sources[k].position).collect();
     let surface = fixture.twin_surface(&scene.pose);
     let lights: Vec<_> = scene.lights.iter().map(|each| light(each, mm)).collect();
     let edge = 0.1 * mm * f64::from(scene.model.mesh.diagonal());
@@ -264,6 +263,11 @@ fn totals(profile: &Profile, medium: &Medium) -> [f64; 3] {
 /// What 10,000 random walks return: known to 1.5 %.
 fn returned(medium: &Medium, index: usize, entry: Entry) -> f64 {
     let [sigma_s_prime, sigma_a] = [medium.sigma_s_prime[index], medium.sigma_a[index]].map(f64::from);
+    let albedo = sigma_s_prime / (sigma_s_prime + sigma_a);
+    if albedo > 0.98 {
+        // Walks would be long; nothing more can come back.
+        return albedo;
+    }
     let channel = Channel { sigma_s_prime, sigma_a, ior: medium.ior.into() };
     let entry = if entry == Entry::Normal { profile::Entry::Normal } else { profile::Entry::Diffuse };
     profile::half_space(&channel, entry, &profile::walks(&channel, entry, 10_000).finish()).total()
