@@ -75,7 +75,8 @@ pub fn rows() -> Vec<Row> {
             "stretched fourfold by a target",
             collapsing([0.0, 0.0, 1.0]).with(|s| s.faces = CONVEX),
             vec![Falling],
-        ),
+        )
+        .unbounded(&["dipole-oriented"]),
         row("mirrored", stretched([-1.0, 1.0, 1.0]), vec![Falling]).excess(SEAMS),
         row("crushed to 10⁻⁶ of its height", stretched([1.0, 1e-6, 1.0]).with(|s| s.faces = 2.0), vec![]),
         row("crushed flat by a target", collapsing([0.0, 1.0, 0.0]).with(|s| s.faces = 2.0), vec![]),
