@@ -1,7 +1,7 @@
 //! What must hold of a row, and the figures that say whether it does.
 
 use super::scene::Scene;
-use super::way::{Column, Glow, Way, ceiling};
+use super::way::{Bodies, Column, Glow, Way, ceiling};
 use translume_tests::{Check, relative_rmse};
 
 /// Below this no light: the kernel table writes nothing as e^−80 = 2e-35 per mm² and watt.
@@ -154,7 +154,7 @@ impl Demand {
     }
 
     /// The figure and its bound.
-    pub fn measure(&self, way: &Way, scene: &Scene, glow: &Glow) -> [f64; 2] {
+    pub fn measure(&self, way: &Way, scene: &Scene, glow: &Glow, bodies: &mut Bodies) -> [f64; 2] {
         // One walk for all channels, whose table interpolates each on its own: measured 1e-4.
         let rounding = 1e-3;
         // Paths of channels that differ are other paths: twice the noise of the mean.
@@ -167,14 +167,14 @@ impl Demand {
             Self::Rising => [against_order(glow, [0, 1, 2]), rounding + noise],
             Self::Falling => [against_order(glow, [2, 1, 0]), rounding + noise],
             Self::Alike(bound) => [unlike(glow), bound + noise],
-            Self::Like(_, other, bound) => [apart(glow, &way.glow(other)), bound + noise],
+            Self::Like(_, other, bound) => [apart(glow, &way.glow(other, bodies)), bound + noise],
             Self::Limit(limit, bound, reach) => {
                 let expected = limit(scene, ceiling(way, &scene.medium));
                 [off(glow, expected, *reach), bound + peak]
             }
             Self::Dimmer(next) => {
                 let mut sequence = vec![through(glow)];
-                sequence.extend(next.iter().map(|scene| through(&way.glow(scene))));
+                sequence.extend(next.iter().map(|scene| through(&way.glow(scene, bodies))));
                 [rise(&sequence), rounding]
             }
         }

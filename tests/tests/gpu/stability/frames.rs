@@ -6,7 +6,7 @@ use super::way::Glow;
 use std::sync::Arc;
 use translume::{DirectionalLight, Light, Medium, Method, wgpu};
 use translume_mesh::{MorphTarget, builtin};
-use translume_tests::{Check, Fixture, Model, Pose, holds, luminous, notices, sphere_with};
+use translume_tests::{Check, Fixture, Model, Pose, at_most, holds, luminous, notices, sphere_with};
 
 /// A sphere whose front a target pulls out and in.
 fn breathing(atlas: u32) -> Arc<Model> {
@@ -92,7 +92,7 @@ fn the_same_input_gives_the_same_bits() {
     }
 }
 
-/// One frame at this atlas size: sound, and as bright in all as at another.
+/// Power that leaves in red at this atlas size, where all is sound.
 fn at_size(size: u32) -> f64 {
     let model = sphere_with(size);
     let mut fixture = body(&model);
@@ -103,20 +103,23 @@ fn at_size(size: u32) -> f64 {
     glow.leaving.iter().zip(&sources).map(|(b, source)| b[0] * source.area).sum()
 }
 
-fn as_bright(size: u32, other: u32, bound: f64) -> Check {
-    let ratio = at_size(size) / at_size(other);
-    translume_tests::at_most(&format!("{size}² against {other}²: power"), (ratio - 1.0).abs(), bound)
+fn as_bright(power: f64, expected: f64, bound: f64) -> Check {
+    at_most("power of an atlas against another", (power / expected - 1.0).abs(), bound)
 }
 
-/// Seams take a larger share of a small atlas: measured in the test's output.
+/// Measured 6 %: 17 texels know the sphere's area, but not where the terminator is.
 #[test]
 fn the_smallest_atlas_is_as_bright_as_a_large_one() {
-    holds(as_bright(16, 128, 0.1));
-    notices(as_bright(16, 128, 0.0));
+    let [small, large] = [16, 128].map(at_size);
+    holds(as_bright(small, large, 0.08));
+    notices(as_bright(0.8 * small, large, 0.08));
+    notices(as_bright(1.2 * small, large, 0.08));
 }
 
 #[test]
 #[ignore = "half a minute on a software rasteriser"]
 fn an_atlas_of_2048_is_as_bright_as_a_small_one() {
-    holds(as_bright(2048, 128, 0.02));
+    let [small, large] = [128, 2048].map(at_size);
+    holds(as_bright(large, small, 0.02));
+    notices(as_bright(1.05 * large, small, 0.02));
 }

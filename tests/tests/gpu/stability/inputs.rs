@@ -2,7 +2,7 @@
 
 use super::demand::{Figure, excess, unsound};
 use super::scene::{Scene, USUAL, sun};
-use super::way::{Glow, Way, ceiling};
+use super::way::{Bodies, Glow, Way, ceiling};
 use translume::{Body, BodyDescriptor, Error};
 use translume_mesh::repair::{RepairError, RepairReport, repair};
 use translume_mesh::{Atlas, AtlasError, AtlasOptions, ChartSource, Mesh, builtin};
@@ -127,7 +127,7 @@ fn sound(name: &'static str, mesh: Mesh) -> Check {
     // A fin may light what it stands on, and a hole shows the other side.
     let scene = Scene { model: Model::new(mesh, 32), faces: 2.0, ..Scene::ball(USUAL).lit(&[sun()]) };
     for way in Way::all().iter().filter(|way| ["all pairs", "dual", "per vertex"].contains(&way.name())) {
-        let glow = way.glow(&scene);
+        let glow = way.glow(&scene, &mut Bodies::default());
         bounded(name, way, &scene, &glow)?;
     }
     Ok(())
@@ -162,7 +162,7 @@ fn another_fate_is_noticed() {
     notices(fate(&("hole", |m| m.triangles.truncate(9), Fate::Mended(RepairReport::is_pristine))));
     let scene = Scene::ball(USUAL).lit(&[sun()]);
     let way = &Way::all()[0];
-    let mut glow = way.glow(&scene);
+    let mut glow = way.glow(&scene, &mut Bodies::default());
     holds(bounded("ball", way, &scene, &glow));
     let good = glow.leaving[5];
     for bad in [f64::NAN, f64::INFINITY, -1e-9, 10.0] {

@@ -17,7 +17,7 @@ mod way;
 use demand::{Demand, Figure, brightest, excess, excess_in_all, unsound};
 use scene::Scene;
 use translume_tests::{Check, gpu, holds};
-use way::{Column, Way, ceiling};
+use way::{Bodies, Column, Way, ceiling};
 
 /// A hard case.
 struct Row {
@@ -61,8 +61,8 @@ impl Row {
         self
     }
 
-    fn figures(&self, way: &Way) -> Vec<Figure> {
-        let glow = way.glow(&self.scene);
+    fn figures(&self, way: &Way, bodies: &mut Bodies) -> Vec<Figure> {
+        let glow = way.glow(&self.scene, bodies);
         let loose = self.unbounded.contains(&way.name());
         let bounded = |[measured, bound]: [f64; 2]| [measured, if loose { f64::INFINITY } else { bound }];
         let figure = |demand, [measured, bound]: [f64; 2]| Figure {
@@ -92,7 +92,7 @@ impl Row {
             figures.push(figure("light to judge is missing", bounded([dark, 0.0])));
         }
         for demand in self.demands.iter().filter(|demand| demand.applies(way)) {
-            figures.push(figure(demand.name(), bounded(demand.measure(way, &self.scene, &glow))));
+            figures.push(figure(demand.name(), bounded(demand.measure(way, &self.scene, &glow, bodies))));
         }
         figures
     }
@@ -111,10 +111,10 @@ impl Row {
 
     /// The same of all that leaves.
     fn allowance_in_all(&self, way: &Way) -> f64 {
-        // Overlapping discs along seams weigh more where the profile is a peak, and totals of half-spaces are known to 1.5 %. Measured 14 % at
+        // Wide texels measured 10 %, and 20 % where the body has but 17. Overlapping discs along seams weigh more where the profile is a peak, and totals of half-spaces are known to 1.5 %. Measured 14 % at
         // η = 2.4.
         let peak = if way.is_peaked() { 0.05 } else { 0.0 };
-        if way.is_pattern() || way.is_oriented() { f64::INFINITY } else { self.excess.min(0.1) + 0.02 + peak }
+        if way.is_pattern() || way.is_oriented() { f64::INFINITY } else { self.excess.min(0.2) + 0.02 + peak }
     }
 }
 
@@ -122,10 +122,9 @@ impl Row {
 fn judge(title: &str, rows: &[Row], ways: &[Way]) -> Check {
     let mut figures = Vec::new();
     for row in rows {
-        let start = std::time::Instant::now();
+        let mut bodies = Bodies::default();
         let taken = ways.iter().filter(|way| !row.without.contains(&way.name()) && way.knows(&row.scene));
-        figures.extend(taken.flat_map(|way| row.figures(way)));
-        eprintln!("{}: {:.2} s", row.name, start.elapsed().as_secs_f64());
+        figures.extend(taken.flat_map(|way| row.figures(way, &mut bodies)));
     }
     print(title, &figures);
     let problems: Vec<String> = figures.iter().filter_map(|figure| figure.check().err()).collect();
@@ -149,7 +148,7 @@ fn print(title: &str, figures: &[Figure]) {
         let cells = Column::ALL.map(|column| cell(line.iter().filter(|figure| figure.column == column)));
         lines += &format!("| {row} | {demand} | {} |\n", cells.join(" | "));
     }
-    eprintln!("\n{lines}");
+    eprintln!("\n{}\n\n{lines}", gpu().adapter_name);
 }
 
 fn cell<'a>(figures: impl Iterator<Item = &'a Figure>) -> String {
@@ -185,11 +184,4 @@ fn lights_hold() {
 #[test]
 fn shapes_hold() {
     holds(judge("shape", &shapes::rows(), &Way::few()));
-}
-
-/// The adapter's name for the figures.
-#[test]
-fn the_adapter_is_named() {
-    eprintln!("stability on {}", gpu().adapter_name);
-    assert!(!gpu().adapter_name.is_empty());
 }

@@ -3,7 +3,7 @@
 use super::scene::Scene;
 use std::collections::HashMap;
 use std::f64::consts::PI;
-use std::sync::{Mutex, OnceLock};
+use std::sync::{Arc, Mutex, OnceLock};
 use translume::{Entry, Evaluate, Frame, Medium, Method, Profile, View, readback};
 use translume_reference::converged::Converged;
 use translume_reference::path::{Ball, PathTracer, Volume};
@@ -55,6 +55,28 @@ pub struct Glow {
     pub areas: Vec<f64>,
 }
 
+/// The bodies of a row: ways with the same profile share the kernel table, which takes longer to make than a frame.
+#[derive(Default)]
+pub struct Bodies(Vec<(Arc<Model>, Medium, f32, Profile, Fixture)>);
+
+impl Bodies {
+    fn of(&mut self, scene: &Scene, profile: &Profile) -> &mut Fixture {
+        let Scene { model, medium, mm_per_unit, .. } = scene;
+        let known = self.0.iter().position(|(m, medium_of, mm, profile_of, _)| {
+            Arc::ptr_eq(m, model) && (medium_of, mm, profile_of) == (medium, mm_per_unit, profile)
+        });
+        let index = known.unwrap_or_else(|| {
+            let fixture = Fixture::new(model, |d| {
+                (d.medium, d.mm_per_unit, d.profile) = (*medium, *mm_per_unit, profile.clone());
+                (d.shadows.resolution, d.shadows.direction_resolution) = (64, 32);
+            });
+            self.0.push((Arc::clone(model), *medium, *mm_per_unit, profile.clone(), fixture));
+            self.0.len() - 1
+        });
+        &mut self.0[index].4
+    }
+}
+
 impl Way {
     pub fn all() -> Vec<Self> {
         let methods = [
@@ -66,12 +88,12 @@ impl Way {
         let profiles = Profile::NAMES.iter().map(|(name, profile)| Self::Profile(name, profile.clone()));
         let points = [Evaluate::PerVertex, Evaluate::PerFragment].map(Self::Points);
         let methods = methods.into_iter().map(|(name, method)| Self::Method(name, method));
-        methods.chain(profiles).chain(points).chain([Self::Pairs, Self::Converged, Self::Paths]).collect()
+        methods.chain(points).chain(profiles).chain([Self::Pairs, Self::Converged, Self::Paths]).collect()
     }
 
-    /// As [`all`](Self::all) with four profiles of different kinds, where the case is not one of the medium.
+    /// As [`all`](Self::all) with the default profile and the one whose sources lie off the surface, where the case is not one of the medium.
     pub fn few() -> Vec<Self> {
-        let kinds = ["half-space", "dipole-oriented", "photon-beam-single", "normalised-diffusion"];
+        let kinds = ["half-space", "dipole-oriented"];
         let kept = |way: &Self| !matches!(way, Self::Profile(name, _) if !kinds.contains(name));
         Self::all().into_iter().filter(kept).collect()
     }
@@ -124,27 +146,25 @@ impl Way {
     }
 
     /// Computes a scene.
-    pub fn glow(&self, scene: &Scene) -> Glow {
-        if *self == Self::Paths {
-            return paths(scene);
-        }
-        let fixture = Fixture::new(&scene.model, |d| {
-            (d.medium, d.mm_per_unit, d.profile) = (scene.medium, scene.mm_per_unit, self.profile());
-            (d.shadows.resolution, d.shadows.direction_resolution) = (64, 32);
-            match self {
-                Self::Method(_, method) => d.method = *method,
-                Self::Points(place) => d.evaluate = *place,
-                _ => (),
-            }
-        });
+    pub fn glow(&self, scene: &Scene, bodies: &mut Bodies) -> Glow {
         match self {
-            Self::Pairs => pairs(&fixture, scene),
-            Self::Converged => converged(&fixture, scene),
-            _ => self.on_gpu(fixture, scene),
+            Self::Paths => paths(scene),
+            Self::Pairs => pairs(bodies.of(scene, &self.profile()), scene),
+            Self::Converged => converged(bodies.of(scene, &self.profile()), scene),
+            _ => self.on_gpu(bodies.of(scene, &self.profile()), scene),
         }
     }
 
-    fn on_gpu(&self, mut fixture: Fixture, scene: &Scene) -> Glow {
+    fn on_gpu(&self, fixture: &mut Fixture, scene: &Scene) -> Glow {
+        let (method, place) = match self {
+            Self::Method(_, method) => (*method, Evaluate::PerTexel),
+            Self::Points(place) => (Method::default(), *place),
+            _ => (Method::default(), Evaluate::PerTexel),
+        };
+        // Not all methods know all places: by way of what all know.
+        fixture.body.set_evaluate(Evaluate::PerTexel).unwrap();
+        fixture.body.set_method(method).unwrap();
+        fixture.body.set_evaluate(place).unwrap();
         let in_fragments = *self == Self::Points(Evaluate::PerFragment);
         let view = View { camera: scene.shot.camera(), pixels: [scene.shot.size; 2] };
         let view = in_fragments.then_some(view);
@@ -161,7 +181,7 @@ impl Way {
             Self::Points(_) => {
                 // L = scale · F_t · B/π with F_t ≤ 1: no more than B, and B itself where η = 1.
                 let scale = PI / f64::from(fixture.body.profile().exit_scale(scene.medium.ior));
-                let shown = scene.shot.take(&fixture).into_iter().filter(|pixel| pixel[3] > 0.0);
+                let shown = scene.shot.take(fixture).into_iter().filter(|pixel| pixel[3] > 0.0);
                 let leaving = shown.map(|[r, g, b, _]| [r, g, b].map(|x| scale * f64::from(x))).collect();
                 Glow { entering, leaving, ..Glow::default() }
             }
@@ -178,13 +198,14 @@ impl Way {
 fn receivers(model: &Model, count: usize) -> Vec<usize> {
     let texels = &model.atlas.texels;
     let mut inside: Vec<usize> = (0..texels.len()).filter(|&k| texels[k].area > 0.0).collect();
+    let nearest = inside.len().min(count / 2);
     let mut picked: Vec<usize> = (0..count / 2).map(|k| inside[(2 * k + 1) * inside.len() / count]).collect();
     let distance = |k: &usize| {
         let at = texels[*k].interpolate(model.mesh.corners(texels[*k].triangle as usize));
         at.iter().map(|x| x * x).sum::<f32>()
     };
     inside.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
-    picked.extend(&inside[..count / 2]);
+    picked.extend(&inside[..nearest]);
     picked
 }
 
