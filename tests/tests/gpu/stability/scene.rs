@@ -77,7 +77,7 @@ impl Scene {
     /// Two squares, one `gap` mm below the other, texels of 1 mm. The upper faces up; the lower faces down, or up as well.
     pub fn sheets(medium: Medium, gap: f32, lower_up: bool) -> Self {
         Self {
-            model: Arc::new(two_squares(gap, lower_up)),
+            model: Arc::new(two_squares(gap, lower_up, 64)),
             lights: vec![from_above()],
             faces: 2.0,
             ..Self::plane(medium)
@@ -106,7 +106,8 @@ pub fn from_above() -> Light {
 /// Texels along a side of each of the two squares.
 pub const SHEET: u32 = 30;
 
-fn two_squares(gap: f32, lower_up: bool) -> Model {
+/// Sheets whose atlas has this size: texels of 1 mm at 64², a gap of four such texels between the charts.
+pub fn two_squares(gap: f32, lower_up: bool, size: u32) -> Model {
     const CELLS: u32 = 6;
     const ATLAS: f32 = 64.0;
     let mut mesh = Mesh { name: "two sheets".to_owned(), ..Mesh::default() };
@@ -129,6 +130,6 @@ fn two_squares(gap: f32, lower_up: bool) -> Model {
         }
     }
     let triangles = mesh.triangles.clone();
-    let atlas = Atlas::from_uvs(&mesh, ATLAS as u32, vertices, triangles).expect("the atlas of two squares");
+    let atlas = Atlas::from_uvs(&mesh, size, vertices, triangles).expect("the atlas of two squares");
     Model { mesh, atlas }
 }
