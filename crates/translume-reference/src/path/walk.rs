@@ -63,9 +63,9 @@ impl PathTracer<'_> {
             density: 0.0,
         };
         if self.is_matched() {
-            walk.collide_ahead()
+            walk.collide_ahead();
         } else {
-            walk.refract_in()
+            walk.refract_in();
         }
         walk.harvest
     }
