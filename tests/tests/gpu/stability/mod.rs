@@ -4,6 +4,8 @@
 //! keep the bound of energy: nothing gives back more than its total reflectance of the largest irradiance. Beyond that each row says what
 //! limit, order or darkness it must have. `-- --nocapture stability` prints the figures as the tables of docs/accuracy.md.
 
+#![allow(clippy::print_stderr, reason = "measured figures, for `--nocapture`")]
+
 mod breaking;
 mod demand;
 mod frames;
@@ -165,7 +167,7 @@ fn cell<'a>(figures: impl Iterator<Item = &'a Figure>) -> String {
 /// In per cent where that is readable.
 fn share(value: f64) -> String {
     match value.abs() {
-        x if x >= 1e-5 && x < 10.0 => format!("{:.2} %", 100.0 * value),
+        x if (1e-5..10.0).contains(&x) => format!("{:.2} %", 100.0 * value),
         0.0 => "0".to_owned(),
         _ => format!("{value:.0e}"),
     }
