@@ -12,6 +12,9 @@ use translume_tests::{Check, Model, gpu, holds, notices, sphere_with};
 enum Fate {
     /// Mended so that the report says this, and then as sound as any.
     Mended(fn(&RepairReport) -> bool),
+    /// Taken as it is, its normals facing inwards: it is sound, but lit from the wrong side. The repair turns only normals of triangles that it
+    /// turns over.
+    InsideOut,
     /// Refused by the repair.
     Unrepaired(fn(&RepairError) -> bool),
 }
@@ -19,7 +22,7 @@ enum Fate {
 type Case = (&'static str, fn(&mut Mesh), Fate);
 
 fn cases() -> Vec<Case> {
-    use Fate::{Mended, Unrepaired};
+    use Fate::{InsideOut, Mended, Unrepaired};
     vec![
         ("nothing wrong", |_| (), Mended(RepairReport::is_pristine)),
         ("triangle of zero area", |m| m.triangles.push([0, 0, 1]), Mended(|r| r.dropped_degenerate == 1)),
@@ -61,11 +64,7 @@ fn cases() -> Vec<Case> {
             },
             Mended(|r| r.non_manifold_edges == 1),
         ),
-        (
-            "flipped normals",
-            |m| m.normals.as_flattened_mut().iter_mut().for_each(|x| *x = -*x),
-            Mended(|r| r.boundary_edges == 0),
-        ),
+        ("flipped normals", |m| m.normals.as_flattened_mut().iter_mut().for_each(|x| *x = -*x), InsideOut),
         (
             "a third of the triangles turned over",
             |m| m.triangles.iter_mut().step_by(3).for_each(|t| t.swap(0, 1)),
@@ -111,6 +110,13 @@ fn fate((name, change, fate): &Case) -> Check {
     match (repair(broken(*change)), fate) {
         (Ok((mesh, report)), Fate::Mended(expected)) if expected(&report) => {
             eprintln!("| {name} | mended: {report} |");
+            if report.boundary_edges == 0 {
+                outward(&mesh)?;
+            }
+            sound(name, mesh)
+        }
+        (Ok((mesh, report)), Fate::InsideOut) if report.is_pristine() && outward(&mesh).is_err() => {
+            eprintln!("| {name} | taken as given, lit from the wrong side |");
             sound(name, mesh)
         }
         (Err(error), Fate::Unrepaired(expected)) if expected(&error) => {
@@ -120,6 +126,21 @@ fn fate((name, change, fate): &Case) -> Check {
         (Ok((_, report)), _) => fail(format!("accepted with {report}")),
         (Err(error), _) => fail(error.to_string()),
     }
+}
+
+/// Normals and triangles of a sphere around the origin face outwards.
+fn outward(mesh: &Mesh) -> Check {
+    let along = |p: [f32; 3], n: [f32; 3]| (0..3).map(|k| p[k] * n[k]).sum::<f32>() > 0.0;
+    let inwards = mesh.positions.iter().zip(&mesh.normals).filter(|(p, n)| !along(**p, **n)).count();
+    let turned = mesh.triangles.iter().filter(|t| {
+        let [a, b, c] = t.map(|v| glam::Vec3::from(mesh.positions[v as usize]));
+        (b - a).cross(c - a).dot(a) <= 0.0
+    });
+    let turned = turned.count();
+    if inwards + turned == 0 {
+        return Ok(());
+    }
+    Err(format!("{}: {inwards} normals and {turned} triangles face inwards", mesh.name))
 }
 
 /// Finite, not negative, bounded, by all pairs, dual and at vertices.
@@ -159,7 +180,12 @@ fn broken_meshes_are_mended_or_refused_by_name() {
 fn another_fate_is_noticed() {
     notices(fate(&("good mesh", |_| (), Fate::Unrepaired(|_| true))));
     notices(fate(&("NaN", |m| m.positions[7][1] = f32::NAN, Fate::Mended(|_| true))));
+    notices(fate(&("good mesh", |_| (), Fate::InsideOut)));
     notices(fate(&("hole", |m| m.triangles.truncate(9), Fate::Mended(RepairReport::is_pristine))));
+    let whole = broken(|_| ());
+    holds(outward(&whole));
+    notices(outward(&broken(|m| m.triangles[5].swap(0, 1))));
+    notices(outward(&broken(|m| m.normals[5] = m.normals[5].map(|x| -x))));
     let scene = Scene::ball(USUAL).lit(&[sun()]);
     let way = &Way::all()[0];
     let mut glow = way.glow(&scene, &mut Bodies::default());
