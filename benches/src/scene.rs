@@ -5,7 +5,7 @@ use crate::{Gpu, Mode, Model};
 use std::time::{Duration, Instant};
 use translume::{
     AmbientLight, Body, BodyDescriptor, Camera, Deformation, Frame, FrameTimings, Light, Lighting, LookAt,
-    Medium, Method, PointLight, Stage,
+    Medium, Method, PointLight, Profile, Stage,
 };
 
 /// What differs from one frame to the next.
@@ -42,6 +42,8 @@ impl<'a> Scene<'a> {
         let mut descriptor = BodyDescriptor {
             medium: Medium::JADE,
             mm_per_unit: 100.0 / diagonal,
+            // What the figures of docs/performance.md were measured with.
+            profile: Profile::DipoleNormalised,
             ..BodyDescriptor::new(&model.mesh, &model.atlas)
         };
         (mode.describe)(&mut descriptor);

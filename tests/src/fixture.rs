@@ -2,7 +2,9 @@
 
 use crate::{Model, gpu};
 use std::sync::Arc;
-use translume::{Body, BodyDescriptor, Cluster, Error, Frame, ShadowOptions, Stage, Work, readback, wgpu};
+use translume::{
+    Body, BodyDescriptor, Cluster, Error, Frame, Profile, ShadowOptions, Stage, Work, readback, wgpu,
+};
 use translume_reference::gather::Source;
 
 /// A model, and the body made of it.
@@ -18,7 +20,8 @@ pub struct Fixture {
 }
 
 impl Fixture {
-    /// A body with `mm_per_unit` 1 and depth maps of 256² unless `change` says otherwise.
+    /// A body with `mm_per_unit` 1, depth maps of 256² and the classical dipole, whose twin has a closed form, unless `change` says
+    /// otherwise.
     ///
     /// # Panics
     /// If the body cannot be created.
@@ -34,6 +37,7 @@ impl Fixture {
     pub fn try_new(model: &Arc<Model>, change: impl FnOnce(&mut BodyDescriptor<'_>)) -> Result<Self, Error> {
         let mut descriptor = BodyDescriptor {
             mm_per_unit: 1.0,
+            profile: Profile::DipoleNormalised,
             shadows: ShadowOptions { resolution: 256, ..ShadowOptions::default() },
             ..BodyDescriptor::new(&model.mesh, &model.atlas)
         };

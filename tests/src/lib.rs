@@ -19,4 +19,5 @@ pub use fixture::Fixture;
 pub use gpu::{Gpu, gpu};
 pub use models::{Model, creature, cuboids, limb, plane, sphere, sphere_with, teapot};
 pub use picture::{Shot, difference};
-pub use twin::{Pose, dipoles, light, luminous, profiles, sum};
+pub use translume_twin::dipoles;
+pub use twin::{Pose, light, luminous, profiles, sum};

@@ -2,11 +2,11 @@
 
 use crate::Fixture;
 use glam::{DMat4, DVec3, Mat4};
-use translume::{BurleyFit, Deformation, Diffusion, Frame, Layer, Light, Lighting, Medium, Profile, Region};
+use translume::{Deformation, Frame, Light, Lighting, Medium, Profile};
 use translume_mesh::Warp;
 use translume_reference::gather::{Gather, Source};
-use translume_reference::profile::{self, Channel, Entry, Numeric, Profile as _, Sheet};
-use translume_reference::{Dipole, Surface, deform};
+use translume_reference::profile::Numeric;
+use translume_reference::{Surface, deform};
 
 /// Where a body is and how it is bent.
 #[derive(Clone, Debug)]
@@ -114,69 +114,13 @@ impl Fixture {
     }
 }
 
-/// A light in millimetres. Intensity is per steradian, so its irradiance over distance² takes the square of the scale.
+/// A light in millimetres.
 ///
 /// # Panics
 /// For a kind of light the twins do not know.
 #[must_use]
 pub fn light(light: &Light, mm_per_unit: f64) -> translume_reference::Light {
-    use translume_reference::Light as Twin;
-    let mm = |p: [f32; 3]| p.map(|x| f64::from(x) * mm_per_unit);
-    let region = |region: Option<Region>| region.map(|r| (mm(r.low), mm(r.high)));
-    match light {
-        Light::Directional(light) => Twin::Directional {
-            to_light: DVec3::from(light.to_light.map(f64::from)).normalize().to_array(),
-            irradiance: light.irradiance.map(f64::from),
-            shadow: light.shadow,
-            region: region(light.region),
-        },
-        Light::Point(light) => Twin::Point {
-            position: mm(light.position),
-            intensity: light.intensity.map(|x| f64::from(x) * mm_per_unit * mm_per_unit),
-            shadow: light.shadow,
-            region: region(light.region),
-        },
-        Light::Spot(light) => Twin::Spot {
-            position: mm(light.position),
-            direction: light.direction.map(f64::from),
-            intensity: light.intensity.map(|x| f64::from(x) * mm_per_unit * mm_per_unit),
-            inner_angle: light.inner_angle.into(),
-            outer_angle: light.outer_angle.into(),
-            shadow: light.shadow,
-            region: region(light.region),
-        },
-        Light::Rectangle(light) => Twin::Rectangle {
-            center: mm(light.center),
-            half_right: mm(light.half_right),
-            half_up: mm(light.half_up),
-            radiance: light.radiance.map(f64::from),
-            shadow: light.shadow,
-        },
-        Light::Sphere(light) => Twin::Sphere {
-            center: mm(light.center),
-            radius: f64::from(light.radius) * mm_per_unit,
-            radiance: light.radiance.map(f64::from),
-            shadow: light.shadow,
-        },
-        Light::Ambient(light) => Twin::Ambient {
-            radiance: light.radiance.map(f64::from),
-            axis: DVec3::from(light.axis.map(f64::from)).normalize().to_array(),
-            half_angle: light.half_angle.into(),
-            shadow: light.shadow,
-        },
-        other => panic!("the twins do not know {other:?}"),
-    }
-}
-
-/// The dipole of each channel.
-#[must_use]
-pub fn dipoles(medium: &Medium) -> [Dipole; 3] {
-    let twin = translume_reference::Medium {
-        sigma_s_prime: medium.sigma_s_prime.map(f64::from),
-        sigma_a: medium.sigma_a.map(f64::from),
-        ior: medium.ior.into(),
-    };
-    twin.dipoles()
+    translume_twin::light(light, mm_per_unit).unwrap_or_else(|| panic!("the twins do not know {light:?}"))
 }
 
 /// Any profile of each channel, by the twin's own quadrature.
@@ -185,57 +129,7 @@ pub fn dipoles(medium: &Medium) -> [Dipole; 3] {
 /// For a kind of profile the twins do not know.
 #[must_use]
 pub fn profiles(profile: &Profile, medium: &Medium) -> [Numeric; 3] {
-    std::array::from_fn(|channel| numeric(profile, medium, channel))
-}
-
-fn channel(medium: &Medium, index: usize) -> Channel {
-    let [sigma_s_prime, sigma_a] = [medium.sigma_s_prime[index], medium.sigma_a[index]].map(f64::from);
-    Channel { sigma_s_prime, sigma_a, ior: medium.ior.into() }
-}
-
-fn numeric(kind: &Profile, medium: &Medium, index: usize) -> Numeric {
-    let colour = channel(medium, index);
-    let white = Channel { sigma_s_prime: colour.sigma_t(), sigma_a: 0.0, ..colour };
-    let dipole = dipoles(medium)[index];
-    match kind {
-        Profile::Dipole | Profile::DipoleNormalised => {
-            let z = dipole.z[0];
-            Numeric::new(|r| dipole.reflectance(r), dipole.sigma_tr, z, [1e-4 * z, 1e4 * z])
-        }
-        Profile::BetterDipole => profile::better_dipole(&colour),
-        Profile::PhotonBeam => profile::photon_beam(&colour),
-        Profile::WithSingleScattering(Diffusion::Dipole) => profile::with_single(&colour, &dipole, 1.0),
-        Profile::WithSingleScattering(Diffusion::BetterDipole) => {
-            profile::with_single(&colour, &profile::better_dipole(&colour), 1.0)
-        }
-        Profile::WithSingleScattering(Diffusion::PhotonBeam) => {
-            let total = profile::photon_beam(&white).total();
-            profile::with_single(&colour, &profile::photon_beam(&colour), total)
-        }
-        Profile::NormalisedDiffusion(fit) => {
-            let entry = if *fit == BurleyFit::Searchlight { Entry::Normal } else { Entry::Diffuse };
-            let length = match fit {
-                BurleyFit::DiffuseMeanFreePath(lengths) => Some(f64::from(lengths[index])),
-                _ => None,
-            };
-            profile::normalised_diffusion(&colour, entry, length)
-        }
-        Profile::Multipole(layers) => {
-            let top = Layer { medium: *medium, thickness_mm: layers.thickness_mm };
-            let sheet = |layer: &Layer| Sheet {
-                channel: channel(&layer.medium, index),
-                thickness: layer.thickness_mm.into(),
-            };
-            let sheets: Vec<_> = std::iter::once(&top).chain(layers.below.iter()).map(sheet).collect();
-            profile::stack(&sheets, [3e-3, 15.0], 0.1)
-        }
-        Profile::Tabulated(table) => {
-            let radii: Vec<f64> = table.radii.iter().map(|&r| r.into()).collect();
-            let values: Vec<f64> = table.values.iter().map(|v| v[index].into()).collect();
-            profile::table(&radii, &values)
-        }
-        other => panic!("the twins do not know {other:?}"),
-    }
+    translume_twin::profiles(profile, medium).unwrap_or_else(|| panic!("the twins do not know {profile:?}"))
 }
 
 /// Irradiance of sources.

@@ -14,8 +14,13 @@ Examples:
   translume render bunny.obj --into egg --frames 48 -o egg.png         whatever is closed melts
   translume render --scene scene.json -o scene.exr                     linear radiance, full float
   translume render creature --frames 9 --timings -o morph.png          and how long each stage took
+  translume trace scene.json --noise 0.05 -o truth.exr                 the same scene by paths: slow, and exact but for noise
   translume inspect bunny.obj --json
   translume inspect creature teapot bunny.obj --table                  a line for each
+  translume report --suite -o report                                   every method in every scene: a page for a browser
+  translume report scene.json -o report                                the same of a scene of yours
+  translume profile --medium marble -o marble.json                     random walks, as exact as you have patience
+  translume render creature --medium marble --profile marble.json -o creature.png
   translume report --suite gather -o report                            error beside time of every kind of light
   translume report --suite scatter -o report                           and of every method
 
@@ -37,9 +42,15 @@ pub enum Command {
     /// Render a model or a scene to a PNG (tone-mapped sRGB) or an EXR (linear radiance).
     #[command(after_help = EXAMPLES)]
     Render(Box<Render>),
+    /// Follow paths of light through a scene: the truth that pictures are held against, to a PNG or an EXR.
+    #[command(after_help = EXAMPLES)]
+    Trace(Trace),
     /// Tell what a model holds and how it unwraps.
     #[command(after_help = EXAMPLES)]
     Inspect(Inspect),
+    /// Walk light through a flat half-space of a medium and write what returns, as a table for `render --profile`.
+    #[command(after_help = EXAMPLES)]
+    Profile(Profile),
     /// Measure speed and error against the CPU reference; writes tables and a plot.
     #[command(after_help = EXAMPLES)]
     Report(Report),
@@ -69,9 +80,10 @@ pub struct Render {
     /// Even out charts until every texel holds about the same area of the surface.
     #[arg(long)]
     pub even: bool,
-    /// Diffuse profile: dipole (the paper's formula to the letter), dipole-normalised, dipole-oriented (its sources below and above the surface), better-dipole, photon-beam, normalised-diffusion,
-    /// normalised-diffusion-searchlight; a dipole, the better one or photon-beam with -single adds light scattered once.
-    #[arg(long, value_name = "NAME", default_value = "dipole-normalised")]
+    /// Diffuse profile: half-space (random walks, tabulated), half-space-searchlight (where all light enters along the normal), dipole (the paper's formula to the letter), dipole-normalised, dipole-oriented (its sources below and above the surface), better-dipole, photon-beam, normalised-diffusion,
+    /// normalised-diffusion-searchlight; a dipole, the better one or photon-beam with -single adds light scattered once; or
+    /// a table that `translume profile` wrote, by the name of its .json.
+    #[arg(long, value_name = "NAME", default_value = "half-space")]
     pub profile: String,
     /// How the scatter sum is evaluated: dual (groups of texels at both ends), tree (each texel by itself), all-pairs (exact and slow), or
     /// pattern (57 samples around a texel of the atlas, tens of percent off: for comparison).
@@ -161,6 +173,49 @@ fn degrees(text: &str) -> Result<[f32; 2], String> {
     }
 }
 
+/// Three numbers with commas between.
+fn colour(text: &str) -> Result<[f32; 3], String> {
+    let numbers = text.split(',').map(|part| part.trim().parse().ok()).collect::<Option<Vec<f32>>>();
+    let three = numbers.and_then(|numbers| numbers.try_into().ok());
+    three.ok_or_else(|| "give three numbers with commas between, as 0.7,1.2,1.9".to_owned())
+}
+
+/// `translume trace`.
+#[derive(Debug, Args)]
+pub struct Trace {
+    /// Scene description in JSON.
+    #[arg(value_name = "SCENE.json")]
+    pub scene: PathBuf,
+    /// Stop at this noise: root mean square of the pixels' standard errors over the mean of the picture. By default 0.05, if nothing else ends
+    /// the work.
+    #[arg(long, value_name = "X")]
+    pub noise: Option<f64>,
+    /// Stop after so many seconds.
+    #[arg(long, value_name = "N")]
+    pub seconds: Option<f64>,
+    /// Stop after so many paths a pixel and channel. Alone, every pixel gets as many; with --noise or --seconds noisy pixels get more.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..))]
+    pub samples: Option<u32>,
+    /// Width of the picture in pixels; the height follows the scene's camera, else the picture is square.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=16384))]
+    pub size: Option<u32>,
+    /// Where random numbers begin: another number gives other noise.
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub seed: u64,
+    /// Brightness of a PNG, in stops.
+    #[arg(long, value_name = "EV", default_value_t = 0.0, allow_negative_numbers = true)]
+    pub exposure: f32,
+    /// Standard error of every pixel, .exr.
+    #[arg(long, value_name = "FILE")]
+    pub stderr: Option<PathBuf>,
+    /// Light that was scattered once, .exr.
+    #[arg(long, value_name = "FILE")]
+    pub single: Option<PathBuf>,
+    /// Picture to write, .png or .exr; it is there after a few seconds and gets better until the work ends.
+    #[arg(short, long, value_name = "FILE")]
+    pub output: PathBuf,
+}
+
 /// `translume inspect`.
 #[derive(Debug, Args)]
 pub struct Inspect {
@@ -178,16 +233,47 @@ pub struct Inspect {
     pub layout: Layout,
 }
 
+/// `translume profile`.
+#[derive(Debug, Args)]
+pub struct Profile {
+    /// Medium by name, as jade, wax, skimmilk, marble, skin1; a wrong name lists them all.
+    #[arg(long, value_name = "NAME")]
+    pub medium: Option<String>,
+    /// Reduced scattering coefficients in 1/mm, in place of those of the medium.
+    #[arg(long, value_name = "R,G,B", value_parser = colour)]
+    pub scattering: Option<[f32; 3]>,
+    /// Absorption coefficients in 1/mm, in place of those of the medium.
+    #[arg(long, value_name = "R,G,B", value_parser = colour)]
+    pub absorption: Option<[f32; 3]>,
+    /// Index of refraction, in place of that of the medium.
+    #[arg(long, value_name = "X")]
+    pub ior: Option<f32>,
+    /// How light enters: normal, or diffuse as under a uniform sky.
+    #[arg(long, value_name = "WAY", default_value = "diffuse", value_parser = ["normal", "diffuse"])]
+    pub entry: String,
+    /// Random walks for each channel.
+    #[arg(long, value_name = "N", default_value_t = 1_000_000, value_parser = clap::value_parser!(u64).range(1000..))]
+    pub photons: u64,
+    /// Table to write, .json; or a folder, in which it gets a name of its own and is left as it is if it is there already.
+    #[arg(short, long, value_name = "FILE|DIR")]
+    pub output: PathBuf,
+}
+
+/// The suite of every method in every scene.
+pub const ALL: &str = "methods";
+
 /// `translume report`.
 #[derive(Debug, Args)]
 pub struct Report {
-    /// What to measure: gather (irradiance in every kind of light) or scatter (exitance by every method); a wrong name lists them all.
-    #[arg(long, value_name = "NAME")]
-    pub suite: String,
-    /// OBJ, glTF or GLB files, or the names of built-in models, separated by commas. By default the creature, and
-    /// stanford-bunny.obj where the folder that TRANSLUME_MODELS names has it; scatter then twists its spot.obj too.
-    #[arg(long, value_name = "MODEL,…", value_delimiter = ',')]
+    /// Scenes (FILE.json), or models: OBJ, glTF or GLB files, or the names of built-in models. By default the scenes that come with
+    /// the program; of gather and scatter the creature, and stanford-bunny.obj where the folder that TRANSLUME_MODELS names has it; scatter then
+    /// twists its spot.obj too.
+    #[arg(value_name = "SCENE|MODEL")]
     pub models: Vec<String>,
+    /// What to measure: methods (every method in every scene, against both truths; the default), gather (irradiance in every kind of light) or
+    /// scatter (exitance against all pairs). Without a name the scenes that come with the program are added to those named.
+    #[arg(long, value_name = "NAME", num_args = 0..=1, default_missing_value = ALL)]
+    pub suite: Option<String>,
     /// Width of the atlas in texels; scatter also takes a quarter, a half and twice of that.
     #[arg(long, value_name = "N", default_value_t = 512)]
     pub atlas: u32,
@@ -198,7 +284,8 @@ pub struct Report {
     /// Fewer settings, fewer repetitions.
     #[arg(long)]
     pub quick: bool,
-    /// Folder to write SUITE.csv, SUITE.md and SUITE.svg to; it is made where there is none.
+    /// Folder to write the report to: index.html, report.csv and pareto.png; of gather and scatter SUITE.csv, SUITE.md and SUITE.svg. It is made
+    /// where there is none.
     #[arg(short, long, value_name = "DIR")]
     pub output: PathBuf,
 }

@@ -7,6 +7,7 @@ use serde::Deserialize;
 use std::fs::File;
 use std::io::{BufRead as _, BufReader};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use translume::{EnvironmentLight, EnvironmentMap, Light};
 
 /// 16,384 × 8,192: a header alone must not fill the memory.
@@ -45,8 +46,26 @@ impl Environment {
         Self { file, scale: one(), rotation_deg: 0.0, split: yes(), shadow: yes() }
     }
 
-    /// As the library takes it: the suns, if they are split off, and the harmonics.
-    pub fn lights(&self) -> Result<Vec<Light>, Error> {
+    /// All pixels, as the reference takes them; the map turns by whole columns.
+    pub fn twin(&self) -> Result<translume_reference::Light, Error> {
+        let map = self.read()?;
+        let (width, turn) = (map.width() as usize, f64::from(self.rotation_deg) / 360.0);
+        let columns = (turn * width as f64).round().rem_euclid(width as f64) as usize;
+        let mut pixels: Vec<_> =
+            map.pixels().iter().map(|rgb| rgb.map(|c| f64::from(c) * f64::from(self.scale))).collect();
+        pixels.chunks_exact_mut(width).for_each(|row| row.rotate_left(columns));
+        match translume_reference::EnvironmentMap::new(width, map.height() as usize, pixels) {
+            Some(map) => {
+                Ok(translume_reference::Light::Environment { map: Arc::new(map), shadow: self.shadow })
+            }
+            None => {
+                Err(Error::Environment { path: self.file.clone(), problem: "holds no pixels".to_owned() })
+            }
+        }
+    }
+
+    /// Reads the file, once the other numbers are known to be fine.
+    fn read(&self) -> Result<EnvironmentMap, Error> {
         let fail = |problem| Err(Error::Environment { path: self.file.clone(), problem });
         if !(0.0..=f32::MAX).contains(&self.scale) {
             return fail(format!("the scale is {}, but must be finite and not negative", self.scale));
@@ -54,7 +73,12 @@ impl Environment {
         if !self.rotation_deg.is_finite() {
             return fail(format!("a rotation by {} degrees is none", self.rotation_deg));
         }
-        let map = read(&self.file)?;
+        read(&self.file)
+    }
+
+    /// As the library takes it: the suns, if they are split off, and the harmonics.
+    pub fn lights(&self) -> Result<Vec<Light>, Error> {
+        let map = self.read()?;
         let (suns, sky) = if self.split { map.split_peaks() } else { (Vec::new(), map.project()) };
         let turn = Mat3::from_rotation_y(self.rotation_deg.to_radians());
         let scaled = |rgb: [f32; 3]| rgb.map(|c| c * self.scale);

@@ -19,11 +19,17 @@ pub enum Error {
     #[error(transparent)]
     Spherical(#[from] SphericalError),
     #[error(transparent)]
+    Path(#[from] translume_reference::path::PathError),
+    #[error(transparent)]
     Translume(#[from] translume::Error),
+    #[error(transparent)]
+    Rival(#[from] translume_rivals::Error),
     #[error("{}: {problem}", path.display())]
     Scene { path: PathBuf, problem: String },
     #[error("{}: {problem}", path.display())]
     Environment { path: PathBuf, problem: String },
+    #[error("{}: {problem}", path.display())]
+    Table { path: PathBuf, problem: String },
     #[error("{}: {problem}", path.display())]
     Output { path: PathBuf, problem: String },
     #[error("{option}: {problem}")]

@@ -14,9 +14,18 @@ pub struct Subject {
 
 impl Subject {
     pub fn new(points: Vec<Vec3>) -> Self {
+        let mut subject = Self { points, middle: Vec3::ZERO, radius: 0.0 };
+        let (low, high) = subject.bounds();
+        let (low, high) = (Vec3::from(low), Vec3::from(high));
+        (subject.middle, subject.radius) = (0.5 * (low + high), 0.5 * low.distance(high));
+        subject
+    }
+
+    /// Corners of a box around it.
+    pub fn bounds(&self) -> ([f32; 3], [f32; 3]) {
         let around = |(low, high): (Vec3, Vec3), p: &Vec3| (low.min(*p), high.max(*p));
-        let (low, high) = points.iter().fold((Vec3::INFINITY, Vec3::NEG_INFINITY), around);
-        Self { points, middle: 0.5 * (low + high), radius: 0.5 * low.distance(high) }
+        let (low, high) = self.points.iter().fold((Vec3::INFINITY, Vec3::NEG_INFINITY), around);
+        (low.to_array(), high.to_array())
     }
 
     /// A camera that has all of it in its square picture, from `view` degrees to the right of the front and upwards.

@@ -161,6 +161,7 @@ fn repairs(repairs: &RepairReport) -> Value {
         "dropped_vertices": repairs.dropped_vertices,
         "welded_vertices": repairs.welded_vertices,
         "flipped_triangles": repairs.flipped_triangles,
+        "turned_normals": repairs.turned_normals,
         "filled_holes": repairs.filled_holes,
         "boundary_edges": repairs.boundary_edges,
         "non_manifold_edges": repairs.non_manifold_edges,

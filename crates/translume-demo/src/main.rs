@@ -9,12 +9,14 @@ mod inspect;
 mod model;
 mod motion;
 mod picture;
+mod profile;
 mod progress;
 mod render;
 mod report;
 mod scene;
 mod studio;
 mod timings;
+mod trace;
 
 use clap::Parser as _;
 use std::process::ExitCode;
@@ -24,6 +26,8 @@ fn main() -> ExitCode {
     let result = match cli::Arguments::parse().command {
         cli::Command::Render(arguments) => render::run(&arguments),
         cli::Command::Inspect(arguments) => inspect::run(&arguments),
+        cli::Command::Profile(arguments) => profile::run(&arguments),
+        cli::Command::Trace(arguments) => trace::run(&arguments),
         cli::Command::Report(arguments) => report::run(&arguments),
     };
     match result {

@@ -72,8 +72,15 @@ impl Picture {
         Self { width, height, pixels }
     }
 
+    /// From 8-bit sRGB, row by row, three bytes a pixel.
+    pub fn from_bytes(width: u32, bytes: &[u8]) -> Self {
+        let pixels: Vec<[f32; 3]> =
+            bytes.as_chunks::<3>().0.iter().map(|rgb| rgb.map(|c| linear(f32::from(c) / 255.0))).collect();
+        Self { width, height: pixels.len() as u32 / width.max(1), pixels }
+    }
+
     /// 8-bit sRGB.
-    fn to_srgb(&self) -> Vec<u8> {
+    pub fn to_srgb(&self) -> Vec<u8> {
         let pixels = self.pixels.iter().enumerate();
         pixels
             .flat_map(|(index, pixel)| {
@@ -104,6 +111,11 @@ fn neutral(colour: [f32; 3]) -> [f32; 3] {
 /// IEC 61966-2-1.
 fn srgb(linear: f32) -> f32 {
     if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 }
+}
+
+/// The inverse of [`srgb`].
+fn linear(srgb: f32) -> f32 {
+    if srgb <= 0.040_45 { srgb / 12.92 } else { ((srgb + 0.055) / 1.055).powf(2.4) }
 }
 
 /// One rounding step of interleaved gradient noise (Jimenez 2014), so that smooth light does not show bands of 8 bits.

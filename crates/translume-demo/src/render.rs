@@ -10,11 +10,11 @@ use crate::picture::{Develop, Format, Output};
 use crate::scene::{Scene, SceneCamera, SceneLight};
 use crate::studio::Studio;
 use crate::timings::table;
-use crate::{model, progress};
+use crate::{model, profile, progress};
 use std::path::Path;
 use std::time::Instant;
 use translume::{
-    BodyDescriptor, Evaluate, Frame, Gloss, Light, Lighting, Medium, Method, Profile, ShadowOptions, View,
+    BodyDescriptor, Evaluate, Frame, Gloss, Light, Lighting, Medium, Method, ShadowOptions, View,
 };
 
 /// Everything a picture needs, in the units of the scene.
@@ -33,7 +33,7 @@ struct Setup {
 
 /// Without units a model is taken to be as large as something held in a hand.
 const ASSUMED_DIAGONAL_MM: f32 = 100.0;
-const DEFAULT_SIZE: u32 = 768;
+pub const DEFAULT_SIZE: u32 = 768;
 /// Wax without a highlight looks dead.
 const DEFAULT_ROUGHNESS: f32 = 0.35;
 
@@ -42,7 +42,7 @@ pub fn run(arguments: &Render) -> Result<(), Error> {
     if arguments.frames > 1 && output.format != Format::Png {
         return Err(Error::Option { option: "--frames", problem: "only a PNG can be animated".to_owned() });
     }
-    let profile = Profile::named(&arguments.profile)?;
+    let profile = profile::open(&arguments.profile)?;
     let method = method(arguments)?;
     let evaluate = evaluate(arguments)?;
     let gpu = Gpu::new()?;
@@ -270,12 +270,8 @@ fn blame(error: Error, arguments: &Render) -> Error {
 
 /// The scene's camera or one that sees all of the subject, with as many pixels as the command line says.
 fn sized(camera: Option<SceneCamera>, subject: &Subject, arguments: &Render) -> SceneCamera {
-    let mut camera = camera.unwrap_or_else(|| subject.camera(DEFAULT_SIZE, arguments.view));
-    if let Some(width) = arguments.size {
-        let height = (f64::from(width) * f64::from(camera.height) / f64::from(camera.width)).round() as u32;
-        (camera.width, camera.height) = (width, height.max(1));
-    }
-    camera
+    let camera = camera.unwrap_or_else(|| subject.camera(DEFAULT_SIZE, arguments.view));
+    arguments.size.map_or(camera, |width| camera.resized(width))
 }
 
 fn gloss(roughness: f32) -> Result<Gloss, Error> {

@@ -55,13 +55,19 @@ impl Camera {
     /// r = unit(f × up), u = r × f.
     #[must_use]
     pub fn direction(&self, column: usize, row: usize) -> [f64; 3] {
+        self.direction_at(column as f64 + 0.5, row as f64 + 0.5)
+    }
+
+    /// The same through a place of the picture, in pixels from its left and its top.
+    #[must_use]
+    pub fn direction_at(&self, across: f64, down: f64) -> [f64; 3] {
         let forward = (DVec3::from(self.target) - DVec3::from(self.eye)).normalize_or_zero();
         let right = forward.cross(self.up.into()).normalize_or_zero();
         let up = right.cross(forward);
         let (width, height) = (self.width as f64, self.height as f64);
         let extent = (0.5 * self.fov).tan();
-        let x = (2.0 * (column as f64 + 0.5) / width - 1.0) * extent;
-        let y = (1.0 - 2.0 * (row as f64 + 0.5) / height) * extent * height / width;
+        let x = (2.0 * across / width - 1.0) * extent;
+        let y = (1.0 - 2.0 * down / height) * extent * height / width;
         (forward + right * x + up * y).to_array()
     }
 }

@@ -24,7 +24,7 @@ pub fn transmittance(eta: f64, cos: f64) -> f64 {
 }
 
 /// Cosine of the refracted direction by Snell's law, 0 under total internal reflection.
-fn refracted_cos(eta: f64, cos: f64) -> f64 {
+pub(crate) fn refracted_cos(eta: f64, cos: f64) -> f64 {
     // eta² − 1 + cos² as a product keeps its digits for eta close to 1.
     (((eta - 1.0) * (eta + 1.0) + cos * cos).max(0.0)).sqrt() / eta
 }

@@ -3,6 +3,7 @@
 //! | module | what it computes |
 //! | --- | --- |
 //! | [`medium`], [`fresnel`], [`dipole`], [`profile`] | the optics: coefficients, exact Fresnel terms, diffuse reflectance profiles |
+//! | [`half_space`] | Monte Carlo of a half-space or slab, which profiles approximate |
 //! | [`surface`], [`lights`], [`environment`] | the scene: triangles with ray queries, and what illuminates them |
 //! | [`deform`] | positions and normals of a morphed pose |
 //! | [`gather`] | position, normal, live area and irradiance of every texel, shadows by ray casting |
@@ -10,6 +11,7 @@
 //! | [`scatter`] | radiant exitance from all pairs of texels, with the profile averaged over each source |
 //! | [`converged`] | radiant exitance from the triangles themselves: what `scatter` tends to with ever more texels |
 //! | [`composite`] | the camera's picture |
+//! | [`path`] | the picture without any diffusion model: paths through the body, with the standard error of every pixel |
 //! | [`metrics`] | how far a picture is from another |
 //!
 //! The stages carry the names of the GPU stages they judge and share no code with them. Lengths are millimetres,
@@ -23,9 +25,11 @@ pub mod dipole;
 pub mod environment;
 pub mod fresnel;
 pub mod gather;
+pub mod half_space;
 pub mod lights;
 pub mod medium;
 pub mod metrics;
+pub mod path;
 pub mod profile;
 mod quadrature;
 mod rgb;

@@ -11,7 +11,9 @@
 use std::time::Duration;
 
 use glam::{DVec3, Vec3A};
-use obvhs::{BvhBuildParams, aabb::Aabb, bvh2::Bvh2, bvh2::builder::build_bvh2};
+use obvhs::bvh2::builder::build_bvh2;
+use obvhs::bvh2::node::Bvh2Node;
+use obvhs::{BvhBuildParams, aabb::Aabb, bvh2::Bvh2};
 
 use crate::deform;
 
@@ -25,9 +27,18 @@ pub struct Surface {
     pub triangles: Vec<[u32; 3]>,
     /// Shade with face normals instead of interpolated ones.
     pub flat: bool,
-    bvh: Bvh2,
-    bvh_triangles: Vec<u32>,
+    nodes: Vec<Node>,
+    /// Triangles in the order of the leaves.
+    leaves: Vec<u32>,
     offset: f64,
+}
+
+/// A node of the tree: two children next to each other from `first` on, or `count` triangles of a leaf.
+struct Node {
+    low: DVec3,
+    high: DVec3,
+    first: u32,
+    count: u32,
 }
 
 /// Where a ray meets the surface.
@@ -53,12 +64,12 @@ impl Surface {
         triangles: Vec<[u32; 3]>,
         flat: bool,
     ) -> Self {
-        let finite = |t: &u32| {
+        let is_finite = |t: &u32| {
             triangles[*t as usize].iter().all(|&v| positions[v as usize].iter().all(|x| x.is_finite()))
         };
-        let bvh_triangles: Vec<u32> = (0..triangles.len() as u32).filter(finite).collect();
+        let finite: Vec<u32> = (0..triangles.len() as u32).filter(is_finite).collect();
         let corners = |t: u32| triangles[t as usize].map(|v| DVec3::from(positions[v as usize]));
-        let boxes: Vec<Aabb> = bvh_triangles.iter().map(|&t| outward_box(corners(t))).collect();
+        let boxes: Vec<Aabb> = finite.iter().map(|&t| outward_box(corners(t))).collect();
         let bounds = boxes.iter().fold(Aabb::INVALID, |sum, each| sum.union(each));
         let offset = if boxes.is_empty() {
             0.0
@@ -67,7 +78,15 @@ impl Surface {
             1e-9 * (high - low).length() + 1e-12 * low.abs().max(high.abs()).max_element()
         };
         let bvh = build(&boxes);
-        Self { positions, normals, triangles, flat, bvh, bvh_triangles, offset }
+        let leaves = bvh.primitive_indices.iter().map(|&slot| finite[slot as usize]).collect();
+        let node = |node: &Bvh2Node| Node {
+            low: node.aabb().min.as_dvec3(),
+            high: node.aabb().max.as_dvec3(),
+            first: node.first_index,
+            count: if node.is_leaf() { node.prim_count } else { 0 },
+        };
+        let nodes = bvh.nodes.iter().map(node).collect();
+        Self { positions, normals, triangles, flat, nodes, leaves, offset }
     }
 
     /// A surface with smooth normals computed from its triangles.
@@ -136,11 +155,28 @@ impl Surface {
         any
     }
 
+    #[inline]
     pub(crate) fn corners(&self, triangle: u32) -> [DVec3; 3] {
-        self.triangles[triangle as usize].map(|v| DVec3::from(self.positions[v as usize]))
+        let [a, b, c] = self.triangles[triangle as usize];
+        [a, b, c].map(|v| DVec3::from_array(self.positions[v as usize]))
     }
 
-    /// Calls `found` for hits within `range`; it returns the range for what follows.
+    /// Calls `found` for every hit along a ray from anywhere and up to a distance, in no order, with the face's normal, not of unit
+    /// length; it returns the distance for what follows.
+    pub(crate) fn every_hit(
+        &self,
+        origin: [f64; 3],
+        direction: [f64; 3],
+        distance: f64,
+        mut found: impl FnMut(Hit, DVec3) -> f64,
+    ) {
+        self.traverse(origin, direction, [0.0, distance], None, |hit| {
+            let [a, b, c] = self.corners(hit.triangle);
+            [0.0, found(hit, (b - a).cross(c - a))]
+        });
+    }
+
+    /// Calls `found` for hits within `range`; it returns the range for what follows. Nearer boxes come first.
     fn traverse(
         &self,
         origin: [f64; 3],
@@ -150,18 +186,37 @@ impl Surface {
         mut found: impl FnMut(Hit) -> [f64; 2],
     ) {
         let ray = Ray::new(origin.into(), direction.into());
-        let mut pending: Vec<u32> = if self.bvh.nodes.is_empty() { Vec::new() } else { vec![0] };
-        while let Some(index) = pending.pop() {
-            let node = &self.bvh.nodes[index as usize];
-            if !ray.meets_box(node.aabb(), range) {
+        let mut pending = Pending::new();
+        if let Some(root) = self.nodes.first()
+            && let Some(enter) = ray.enters_box(root, range)
+        {
+            pending.push(0, enter);
+        }
+        while let Some((index, enter)) = pending.pop() {
+            // What was found since may be nearer than the box.
+            if enter > range[1] {
                 continue;
             }
-            if !node.is_leaf() {
-                pending.extend([node.first_index, node.first_index + 1]);
+            let node = &self.nodes[index as usize];
+            if node.count == 0 {
+                let (left, right) = (node.first, node.first + 1);
+                let enters = |child: u32| ray.enters_box(&self.nodes[child as usize], range);
+                match (enters(left), enters(right)) {
+                    (Some(a), Some(b)) if a < b => {
+                        pending.push(right, b);
+                        pending.push(left, a);
+                    }
+                    (Some(a), Some(b)) => {
+                        pending.push(left, a);
+                        pending.push(right, b);
+                    }
+                    (Some(a), None) => pending.push(left, a),
+                    (None, Some(b)) => pending.push(right, b),
+                    (None, None) => {}
+                }
                 continue;
             }
-            for slot in node.first_index..node.first_index + node.prim_count {
-                let triangle = self.bvh_triangles[self.bvh.primitive_indices[slot as usize] as usize];
+            for &triangle in &self.leaves[node.first as usize..(node.first + node.count) as usize] {
                 if excluded == Some(triangle) {
                     continue;
                 }
@@ -172,6 +227,46 @@ impl Surface {
                 }
             }
         }
+    }
+}
+
+/// Two roundings on either side of a box (Ize 2013, "Robust BVH Ray Traversal").
+const SLACK: f64 = 1.0 + 4.0 * f64::EPSILON;
+
+/// Nodes still to visit, with where the ray enters them or a little before. The first ones need no memory of the heap: rays are many,
+/// deep trees few.
+struct Pending {
+    first: [(u32, f32); 32],
+    count: usize,
+    rest: Vec<(u32, f32)>,
+}
+
+impl Pending {
+    fn new() -> Self {
+        Self { first: [(0, 0.0); 32], count: 0, rest: Vec::new() }
+    }
+
+    #[inline]
+    fn push(&mut self, node: u32, enter: f64) {
+        let node = (node, (enter * (1.0 - 1e-6)) as f32);
+        if let Some(slot) = self.first.get_mut(self.count) {
+            *slot = node;
+            self.count += 1;
+        } else {
+            self.rest.push(node);
+        }
+    }
+
+    #[inline]
+    fn pop(&mut self) -> Option<(u32, f64)> {
+        let (node, enter) = match self.rest.pop() {
+            Some(node) => node,
+            None => {
+                self.count = self.count.checked_sub(1)?;
+                self.first[self.count]
+            }
+        };
+        Some((node, f64::from(enter)))
     }
 }
 
@@ -196,27 +291,35 @@ impl Ray {
         Self { origin, inverse, axes: [x, y, z], shear }
     }
 
-    fn meets_box(&self, bounds: &Aabb, range: [f64; 2]) -> bool {
-        let low = (bounds.min.as_dvec3() - self.origin) * self.inverse;
-        let high = (bounds.max.as_dvec3() - self.origin) * self.inverse;
-        let enter = low.min(high).max_element().max(range[0]);
-        let leave = low.max(high).min_element().min(range[1]);
-        // Two roundings on either side (Ize 2013, "Robust BVH Ray Traversal").
-        enter <= leave * (1.0 + 4.0 * f64::EPSILON)
+    /// Where the ray enters a box that it meets within `range`.
+    #[inline]
+    fn enters_box(&self, node: &Node, range: [f64; 2]) -> Option<f64> {
+        let [mut enter, mut leave] = range;
+        for axis in 0..3 {
+            let a = (node.low[axis] - self.origin[axis]) * self.inverse[axis];
+            let b = (node.high[axis] - self.origin[axis]) * self.inverse[axis];
+            // One instruction each, where `min` and `max` also look for what is not a number.
+            let (near, far) = if a < b { (a, b) } else { (b, a) };
+            enter = if near > enter { near } else { enter };
+            leave = if far < leave { far } else { leave };
+        }
+        (enter <= leave * SLACK).then_some(enter)
     }
 
+    #[inline]
     fn meets_triangle(&self, corners: [DVec3; 3]) -> Option<(f64, [f64; 2])> {
         let [x, y, z] = self.axes;
-        let [a, b, c] = corners.map(|corner| {
-            let p = corner - self.origin;
+        let sheared = |corner: DVec3| {
+            let p = (corner - self.origin).to_array();
             [p[x] - self.shear[0] * p[z], p[y] - self.shear[1] * p[z], self.shear[2] * p[z]]
-        });
+        };
+        let [a, b, c] = [sheared(corners[0]), sheared(corners[1]), sheared(corners[2])];
         let edge = |p: [f64; 3], q: [f64; 3]| p[0] * q[1] - p[1] * q[0];
-        let weights = [edge(c, b), edge(a, c), edge(b, a)];
-        if weights.iter().any(|&w| w < 0.0) && weights.iter().any(|&w| w > 0.0) {
+        let weights @ [u, v, w] = [edge(c, b), edge(a, c), edge(b, a)];
+        if (u < 0.0 || v < 0.0 || w < 0.0) && (u > 0.0 || v > 0.0 || w > 0.0) {
             return None;
         }
-        let sum: f64 = weights.iter().sum();
+        let sum = u + v + w;
         if sum == 0.0 {
             return None;
         }

@@ -2,14 +2,13 @@
 
 #![allow(clippy::print_stderr, reason = "measured figures, for `--nocapture`")]
 
-use std::f64::consts::TAU;
 use translume_reference::Dipole;
-use translume_reference::fresnel::transmittance;
+use translume_reference::half_space::{Entry as Way, Setup};
 use translume_reference::profile::{
     Channel, Entry, Profile, better_dipole, half_space_albedo, normalised_diffusion, photon_beam, with_single,
 };
 
-const WALKS: u32 = 60_000;
+const WALKS: u64 = 60_000;
 /// Radii of the rings, in mean free paths: half an octave each.
 const RINGS: usize = 20;
 
@@ -17,55 +16,14 @@ fn edge(ring: usize) -> f64 {
     0.05 * 2.0_f64.powf(0.5 * ring as f64)
 }
 
-/// Splitmix64, 0..1.
-struct Dice(u64);
-
-impl Dice {
-    fn roll(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut x = self.0;
-        x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((x ^ (x >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
-    }
-}
-
-/// What leaves in each ring, in all, and the share of it that was scattered once, of unit power that enters at a point. Unit extinction,
-/// isotropic scattering.
+/// What leaves in each ring, and in all, of unit power that enters at a point. Unit extinction, isotropic scattering.
 fn walk(albedo: f64, ior: f64, entry: Entry) -> ([f64; RINGS], f64) {
-    let mut dice = Dice(7);
-    let (mut rings, mut total) = ([0.0; RINGS], 0.0);
-    for _ in 0..WALKS {
-        let down = if entry == Entry::Normal { 1.0 } else { dice.roll().sqrt() };
-        let mut direction = [(1.0 - down * down).sqrt(), 0.0, down];
-        let mut place = [0.0_f64; 3];
-        let mut weight = 1.0;
-        while weight > 1e-4 {
-            let mut step = -(1.0 - dice.roll()).ln();
-            // Through the surface in part; the rest turns back.
-            while place[2] + step * direction[2] < 0.0 {
-                let way = -place[2] / direction[2];
-                (0..3).for_each(|k| place[k] += way * direction[k]);
-                place[2] = 0.0;
-                let leaves = weight * transmittance(1.0 / ior, -direction[2]);
-                total += leaves;
-                let r = place[0].hypot(place[1]);
-                if let Some(ring) = (0..RINGS).find(|&k| r < edge(k)) {
-                    rings[ring] += leaves;
-                }
-                weight -= leaves;
-                direction[2] = -direction[2];
-                step -= way;
-            }
-            (0..3).for_each(|k| place[k] += step * direction[k]);
-            weight *= albedo;
-            let (cosine, angle) = (2.0 * dice.roll() - 1.0, TAU * dice.roll());
-            let sine = (1.0 - cosine * cosine).sqrt();
-            direction = [sine * angle.cos(), sine * angle.sin(), cosine];
-        }
-    }
-    let scale = 1.0 / f64::from(WALKS);
-    (rings.map(|x| x * scale), total * scale)
+    let entry = if entry == Entry::Normal { Way::Normal } else { Way::Cosine };
+    let edges = (0..RINGS).map(edge).collect();
+    let setup =
+        Setup { entry, ior, albedos: vec![albedo], edges, photons: WALKS, seed: 7, ..Setup::default() };
+    let all = &setup.finish().reflected[0].all;
+    (std::array::from_fn(|ring| all.rings[ring].value), all.total.value)
 }
 
 /// Σ |walks − profile| over the rings, over what leaves in all: the error of shape and energy that Christensen and Burley quote.

@@ -33,7 +33,7 @@ pub struct BodyDescriptor<'a> {
 }
 
 impl<'a> BodyDescriptor<'a> {
-    /// Defaults for everything but the shape: marble, normalised dipole, dual, metres, smooth normals.
+    /// Defaults for everything but the shape: marble, half-space, dual, metres, smooth normals.
     #[must_use]
     pub fn new(mesh: &'a Mesh, atlas: &'a Atlas) -> Self {
         Self {

@@ -74,7 +74,7 @@ pub use gpu::Work;
 pub use layout::Cluster;
 pub use light::{AmbientLight, DirectionalLight, Light, PointLight, Region, SpotLight};
 pub use medium::Medium;
-pub use profile::{BurleyFit, Diffusion, Layer, Layers, Profile, Table};
+pub use profile::{BurleyFit, BurleyShape, Diffusion, Entry, Layer, Layers, Profile, Reflectance, Table};
 pub use shadow_options::ShadowOptions;
 pub use stages::composite::{Composite, CompositeTarget, CompositeView, Gloss};
 pub use stages::scatter::Method;

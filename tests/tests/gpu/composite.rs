@@ -41,7 +41,7 @@ fn resolved(fixture: &Fixture, pixels: &[u32]) -> Check {
 
 #[test]
 fn the_texture_holds_the_texels() {
-    let fixture = lit(false, Profile::default());
+    let fixture = lit(false, Profile::DipoleNormalised);
     let mut pixels = fixture.model.atlas.pixels.clone();
     holds(resolved(&fixture, &pixels));
     let filled: Vec<usize> = (0..pixels.len()).filter(|&k| pixels[k] != Atlas::EMPTY).collect();

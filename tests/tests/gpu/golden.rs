@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 use std::sync::Arc;
-use translume::{AmbientLight, DirectionalLight, Light, Medium, PointLight};
+use translume::{AmbientLight, DirectionalLight, Light, Medium, PointLight, Profile};
 use translume_tests::{
     Check, Fixture, Model, Pose, Shot, at_most, creature, difference, holds, notices, sphere, teapot,
 };
@@ -56,8 +56,9 @@ fn skin_teapot() -> Scene {
 
 /// 8-bit RGB under the tone curve √(min(L, 1)).
 fn develop(scene: &Scene, gain: f32) -> Vec<u8> {
-    let mut fixture =
-        Fixture::new(&scene.model, |d| (d.medium, d.mm_per_unit) = (scene.medium, scene.mm_per_unit));
+    let mut fixture = Fixture::new(&scene.model, |d| {
+        (d.medium, d.mm_per_unit, d.profile) = (scene.medium, scene.mm_per_unit, Profile::default());
+    });
     fixture.run(&Pose::rest(scene.model.mesh.targets.len()).frame(&scene.lights));
     let radiance = scene.shot.take(&fixture);
     let tone = |x: f32| (255.0 * (gain * x).clamp(0.0, 1.0).sqrt()).round() as u8;

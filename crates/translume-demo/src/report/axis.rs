@@ -3,13 +3,33 @@
 use plotters::coord::Shift;
 use plotters::prelude::*;
 
-pub type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
-pub type Drawn<T = ()> = Result<T, DrawingAreaErrorKind<std::io::Error>>;
-pub type Chart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<LogCoord<f64>, LogCoord<f64>>>;
+pub type Area<'a, B = SVGBackend<'a>> = DrawingArea<B, Shift>;
+pub type Drawn<B, T = ()> = Result<T, DrawingAreaErrorKind<<B as DrawingBackend>::ErrorType>>;
+pub type Chart<'a, B> = ChartContext<'a, B, Cartesian2d<LogCoord<f64>, LogCoord<f64>>>;
 
-/// Four that a colour-blind eye tells apart. Source: Okabe and Ito, "Color Universal Design".
-pub const COLOURS: [RGBColor; 4] =
-    [RGBColor(0, 114, 178), RGBColor(213, 94, 0), RGBColor(0, 158, 115), RGBColor(204, 121, 167)];
+/// Seven that a colour-blind eye tells apart, and an olive in place of their yellow, which white paper swallows. Source: Okabe and Ito, "Color
+/// Universal Design".
+pub const COLOURS: [RGBColor; 8] = [
+    RGBColor(0, 114, 178),
+    RGBColor(213, 94, 0),
+    RGBColor(0, 158, 115),
+    RGBColor(204, 121, 167),
+    RGBColor(86, 180, 233),
+    RGBColor(230, 159, 0),
+    RGBColor(0, 0, 0),
+    RGBColor(170, 160, 30),
+];
+
+/// Letters for pictures of pixels; a program that draws them has to bring its own.
+pub fn fonts() {
+    static ONCE: std::sync::Once = std::sync::Once::new();
+    ONCE.call_once(|| {
+        let font = epaint_default_fonts::UBUNTU_LIGHT;
+        if plotters::style::register_font("sans-serif", FontStyle::Normal, font).is_err() {
+            log::warn!("plots have no letters: the font that comes with the program cannot be read");
+        }
+    });
+}
 
 /// Around all values, with some room.
 fn range(values: impl Iterator<Item = f64>) -> std::ops::Range<f64> {
@@ -28,18 +48,20 @@ fn rounded(value: f64) -> f64 {
     ((value / unit).round() * unit * 1e6).round() / 1e6
 }
 
-/// A panel with room for these points, ms and relative error. `what`: over the mean of which errors are.
-pub fn chart<'a, 'b>(
-    panel: &'a Area<'b>,
+/// A panel with room for these points, ms and relative error. `what`: over the mean of which errors are. `scale`: pixels of a unit.
+pub fn chart<'a, B: DrawingBackend>(
+    panel: &'a DrawingArea<B, Shift>,
     title: &str,
     what: &str,
     points: &[(f64, f64)],
-) -> Drawn<Chart<'a, 'b>> {
+    scale: f64,
+) -> Drawn<B, Chart<'a, B>> {
+    fonts();
     let mut chart = ChartBuilder::on(panel)
-        .caption(title, ("sans-serif", 18))
-        .margin(10)
-        .x_label_area_size(40)
-        .y_label_area_size(64)
+        .caption(title, ("sans-serif", 18.0 * scale))
+        .margin(10.0 * scale)
+        .x_label_area_size(40.0 * scale)
+        .y_label_area_size(64.0 * scale)
         .build_cartesian_2d(
             decades(range(points.iter().map(|point| point.0))).log_scale(),
             decades(range(points.iter().map(|point| point.1))).log_scale(),
@@ -48,6 +70,7 @@ pub fn chart<'a, 'b>(
         .configure_mesh()
         .max_light_lines(0)
         .x_labels(6)
+        .label_style(("sans-serif", 12.0 * scale))
         .x_desc("ms")
         .y_desc(format!("RMS error / mean {what}, %"))
         .x_label_formatter(&|ms| format!("{}", rounded(*ms)))
@@ -56,11 +79,16 @@ pub fn chart<'a, 'b>(
     Ok(chart)
 }
 
-/// What the colours stand for, where lines seldom are: error falls as time grows.
-pub fn legend<'a, 'b: 'a>(chart: &mut Chart<'a, 'b>) -> Drawn {
+/// What the colours stand for, in a corner where lines seldom are: error falls as time grows.
+pub fn legend<'a, B: DrawingBackend + 'a>(
+    chart: &mut Chart<'a, B>,
+    corner: SeriesLabelPosition,
+    scale: f64,
+) -> Drawn<B> {
     chart
         .configure_series_labels()
-        .position(SeriesLabelPosition::LowerLeft)
+        .position(corner)
+        .label_font(("sans-serif", 12.0 * scale))
         .background_style(WHITE.mix(0.8))
         .border_style(BLACK)
         .draw()

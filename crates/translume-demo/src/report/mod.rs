@@ -5,7 +5,9 @@ mod bench;
 mod csv;
 mod date;
 mod flicker;
+mod frontier;
 mod gather;
+mod method;
 mod plot;
 mod scatter;
 mod scenes;
@@ -14,7 +16,7 @@ mod table;
 mod trials;
 mod twin;
 
-use crate::cli::Report;
+use crate::cli::{self, Report};
 use crate::error::Error;
 use std::path::Path;
 
@@ -22,12 +24,13 @@ use std::path::Path;
 const IOR: f32 = 1.3;
 
 pub fn run(arguments: &Report) -> Result<(), Error> {
-    match arguments.suite.as_str() {
-        "gather" => gather::run(arguments),
-        "scatter" => scatter::run(arguments),
-        other => Err(Error::Option {
+    match arguments.suite.as_deref() {
+        None | Some(cli::ALL) => frontier::run(arguments),
+        Some("gather") => gather::run(arguments),
+        Some("scatter") => scatter::run(arguments),
+        Some(other) => Err(Error::Option {
             option: "--suite",
-            problem: format!("no suite is called \"{other}\"; known are gather, scatter"),
+            problem: format!("no suite is called \"{other}\"; known are {}, gather, scatter", cli::ALL),
         }),
     }
 }

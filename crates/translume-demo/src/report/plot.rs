@@ -50,9 +50,9 @@ fn lines<'a>(rows: &'a [Row], scene: &str, sweep: Sweep) -> Vec<Line<'a>> {
     lines
 }
 
-fn draw(panel: &Area<'_>, title: &str, lines: &[Line<'_>]) -> Drawn {
+fn draw<'a>(panel: &Area<'a>, title: &str, lines: &[Line<'_>]) -> Drawn<SVGBackend<'a>> {
     let points: Vec<_> = lines.iter().flat_map(|(_, points)| points).copied().collect();
-    let mut chart = chart(panel, title, "irradiance", &points)?;
+    let mut chart = chart(panel, title, "irradiance", &points, 1.0)?;
     for (k, (light, points)) in lines.iter().enumerate() {
         let colour = COLOURS[k % COLOURS.len()].filled();
         let series = LineSeries::new(points.iter().copied(), colour.stroke_width(2)).point_size(3);
@@ -61,5 +61,5 @@ fn draw(panel: &Area<'_>, title: &str, lines: &[Line<'_>]) -> Drawn {
             .label(*light)
             .legend(move |(x, y)| PathElement::new([(x, y), (x + 16, y)], colour.stroke_width(2)));
     }
-    legend(&mut chart)
+    legend(&mut chart, SeriesLabelPosition::LowerLeft, 1.0)
 }

@@ -4,7 +4,7 @@ use crate::cli::Report;
 use crate::error::Error;
 use crate::model::{self, Model};
 use glam::Vec3;
-use std::path::Path;
+use std::path::PathBuf;
 use translume_mesh::rig::Pose;
 use translume_mesh::{Atlas, AtlasOptions, Warp};
 
@@ -59,8 +59,13 @@ pub fn names(arguments: &Report) -> Vec<String> {
     std::iter::once("creature".to_owned()).chain(scan("stanford-bunny.obj")).collect()
 }
 
-/// A file among the models that the environment says where to find.
+/// The folder of models, if the environment names one.
+pub fn models() -> Option<PathBuf> {
+    std::env::var_os(MODELS).map(PathBuf::from)
+}
+
+/// A file among those models.
 pub fn scan(file: &str) -> Option<String> {
-    let path = Path::new(&std::env::var_os(MODELS)?).join(file);
+    let path = models()?.join(file);
     path.is_file().then(|| path.to_string_lossy().into_owned())
 }

@@ -2,7 +2,7 @@
 
 use super::scenes;
 use super::subject::Subject;
-use super::twin::{self, Twin};
+use super::twin::Twin;
 use std::sync::Arc;
 use translume::{
     DirectionalLight, EnvironmentLight, EnvironmentMap, Error, Light, ShadowOptions, SphereLight,
@@ -83,7 +83,8 @@ fn smooth_skies(quick: bool) -> Result<[Trial; 2], Error> {
     let sky = scenes::sky_map(256, 128, |_| None)?;
     let light = |shadow| vec![Light::Environment(EnvironmentLight { shadow, ..sky.project() })];
     let truth = sky_truth(&sky, [2, 8]);
-    let open = twin::map(&scenes::sky_map(512, 256, |_| None)?).map_or(Truth::None, Truth::Quadrature);
+    let open =
+        translume_twin::map(&scenes::sky_map(512, 256, |_| None)?).map_or(Truth::None, Truth::Quadrature);
     Ok([
         trial("smooth sky", light(true), truth, sky_settings(quick)),
         trial("smooth sky, not occluded", light(false), open, vec![unshaded()]),
@@ -112,7 +113,8 @@ fn suns() -> Result<[Trial; 2], Error> {
 }
 
 fn sky_truth(map: &EnvironmentMap, [samples, rays]: [u32; 2]) -> Truth {
-    let light = twin::map(map).map(|map| translume_reference::Light::Environment { map, shadow: true });
+    let light =
+        translume_twin::map(map).map(|map| translume_reference::Light::Environment { map, shadow: true });
     Truth::Rays { lights: light.into_iter().collect(), samples, rays }
 }
 

@@ -2,8 +2,6 @@
 
 use super::IOR;
 use super::subject::Subject;
-use glam::DVec3;
-use std::sync::Arc;
 use translume::Light;
 use translume_mesh::Atlas;
 use translume_reference::gather::{Gather, Source};
@@ -43,21 +41,12 @@ impl Twin {
     pub fn new(subject: &Subject, every: usize) -> Self {
         let mesh = &subject.model.mesh;
         let mm_per_unit = f64::from(subject.mm_per_unit);
-        let weights: Vec<f64> = subject.pose.weights.iter().copied().map(f64::from).collect();
-        let joints: Vec<_> =
-            subject.pose.joints.iter().map(|joint| joint.map(|column| column.map(f64::from))).collect();
-        let pose = deform::Pose { weights: &weights, joints: &joints, warp: subject.warp };
-        let positions = deform::posed(mesh, &pose, mm_per_unit);
-        // A mesh that nothing deforms keeps the normals of its file.
-        let rigid = mesh.targets.is_empty() && mesh.skin.is_none() && subject.warp.is_identity();
-        let own = || mesh.normals.iter().map(|n| DVec3::from(n.map(f64::from)).normalize().to_array());
-        let normals = if rigid { own().collect() } else { deform::normals(mesh, &positions) };
         let mut atlas = subject.atlas.clone();
         atlas.texels = atlas.texels.into_iter().step_by(every).collect();
         Self {
             atlas,
             rest: deform::positions(mesh, &[], mm_per_unit),
-            surface: Surface::new(positions, normals, mesh.triangles.clone(), false),
+            surface: translume_twin::surface(mesh, &subject.pose, subject.warp, mm_per_unit, false),
             mm_per_unit,
             every,
         }
@@ -86,57 +75,9 @@ impl Twin {
         self.atlas.texels.len().div_ceil(MOST).max(1)
     }
 
-    /// A light in millimetres; `None` for a kind that rays do not know, such as harmonics. Intensity is per steradian, so its
-    /// irradiance over distance² takes the square of the scale.
+    /// A light in millimetres; `None` for a kind that rays do not know, such as harmonics.
     pub fn light(&self, light: &Light) -> Option<translume_reference::Light> {
-        use translume_reference::Light as Twin;
-        let double = |v: [f32; 3]| v.map(f64::from);
-        let mm = |p: [f32; 3]| p.map(|x| f64::from(x) * self.mm_per_unit);
-        let unit = |v: [f32; 3]| DVec3::from(double(v)).normalize().to_array();
-        let intensity = |rgb: [f32; 3]| rgb.map(|c| f64::from(c) * self.mm_per_unit * self.mm_per_unit);
-        Some(match light {
-            Light::Directional(light) => Twin::Directional {
-                to_light: unit(light.to_light),
-                irradiance: double(light.irradiance),
-                shadow: light.shadow,
-                region: None,
-            },
-            Light::Point(light) => Twin::Point {
-                position: mm(light.position),
-                intensity: intensity(light.intensity),
-                shadow: light.shadow,
-                region: None,
-            },
-            Light::Spot(light) => Twin::Spot {
-                position: mm(light.position),
-                direction: double(light.direction),
-                intensity: intensity(light.intensity),
-                inner_angle: light.inner_angle.into(),
-                outer_angle: light.outer_angle.into(),
-                shadow: light.shadow,
-                region: None,
-            },
-            Light::Rectangle(light) => Twin::Rectangle {
-                center: mm(light.center),
-                half_right: mm(light.half_right),
-                half_up: mm(light.half_up),
-                radiance: double(light.radiance),
-                shadow: light.shadow,
-            },
-            Light::Sphere(light) => Twin::Sphere {
-                center: mm(light.center),
-                radius: f64::from(light.radius) * self.mm_per_unit,
-                radiance: double(light.radiance),
-                shadow: light.shadow,
-            },
-            Light::Ambient(light) => Twin::Ambient {
-                radiance: double(light.radiance),
-                axis: unit(light.axis),
-                half_angle: light.half_angle.into(),
-                shadow: light.shadow,
-            },
-            _ => return None,
-        })
+        translume_twin::light(light, self.mm_per_unit)
     }
 
     fn sources(
@@ -175,10 +116,4 @@ impl Reference {
             bias: metrics.bias,
         })
     }
-}
-
-/// The library's map in double precision.
-pub fn map(map: &translume::EnvironmentMap) -> Option<Arc<EnvironmentMap>> {
-    let pixels = map.pixels().iter().map(|rgb| rgb.map(f64::from)).collect();
-    EnvironmentMap::new(map.width() as usize, map.height() as usize, pixels).map(Arc::new)
 }

@@ -113,6 +113,19 @@ impl SceneLight {
         }
     }
 
+    /// As the reference takes it, in millimetres.
+    pub fn twins(
+        &self,
+        just_below_y0: f32,
+        mm_per_unit: f64,
+    ) -> Result<Vec<translume_reference::Light>, Error> {
+        if let Self::Environment(environment) = self {
+            return Ok(vec![environment.twin()?]);
+        }
+        let lights = self.lights(just_below_y0)?;
+        Ok(lights.iter().filter_map(|light| translume_twin::light(light, mm_per_unit)).collect())
+    }
+
     /// As the library takes it: an environment may become several. `just_below_y0` is the height that still counts as the face y = 0.
     pub fn lights(&self, just_below_y0: f32) -> Result<Vec<Light>, Error> {
         let region = |lit: &Option<LitRegion>| lit.as_ref().map(|lit| lit.region(just_below_y0));

@@ -154,8 +154,14 @@ impl Scene {
     pub fn read(path: &Path) -> Result<Self, Error> {
         let fail = |problem: String| Error::Scene { path: path.to_owned(), problem };
         let text = std::fs::read_to_string(path).map_err(|error| fail(format!("cannot be read: {error}")))?;
+        Self::parse(&text, path)
+    }
+
+    /// A scene in words; `path` is where they stand, and where what they refer to is.
+    pub fn parse(text: &str, path: &Path) -> Result<Self, Error> {
+        let fail = |problem: String| Error::Scene { path: path.to_owned(), problem };
         let mut scene: Self =
-            serde_json::from_str(&text).map_err(|error| fail(format!("is not a scene: {error}")))?;
+            serde_json::from_str(text).map_err(|error| fail(format!("is not a scene: {error}")))?;
         if scene.material.is_some() && scene.medium.is_some() {
             return Err(fail("has both `material` and `medium`; keep one".to_owned()));
         }
@@ -168,6 +174,29 @@ impl Scene {
         let directory = path.parent().unwrap_or(Path::new(""));
         scene.lights.iter_mut().flatten().for_each(|light| light.find(directory));
         Ok(scene)
+    }
+
+    /// A model by name or file in jade, in the light that suits it.
+    pub fn of_model(name: &str) -> Self {
+        let shape = if !Path::new(name).exists() && builtin::NAMES.contains(&name) {
+            Shape::Builtin { name: name.to_owned(), normals: Normals::Smooth, fill_holes: None }
+        } else {
+            Shape::Mesh { file: name.into(), normals: Normals::Smooth, fill_holes: None }
+        };
+        Self {
+            name: name.to_owned(),
+            purpose: String::new(),
+            length_unit: LengthUnit::Millimetre,
+            shape,
+            material: None,
+            medium: Some("jade".to_owned()),
+            lights: None,
+            camera: None,
+            morph: Vec::new(),
+            warp: SceneWarp::default(),
+            animation: None,
+            time: None,
+        }
     }
 
     /// The scene's medium, if it says one.
@@ -189,7 +218,7 @@ impl Scene {
     pub fn model(&self, path: &Path) -> Result<(model::Model, bool), Error> {
         match &self.shape {
             Shape::Mesh { file, normals, fill_holes } => {
-                let file = path.parent().unwrap_or(Path::new("")).join(file);
+                let file = self.shape.file(path).unwrap_or_else(|| file.clone());
                 Ok((model::open_file(&file)?.closed(*fill_holes)?, *normals == Normals::Flat))
             }
             // 20,480 triangles: no point of the surface is further than 0.02 % of the radius from the sphere.
@@ -211,6 +240,16 @@ impl Scene {
     }
 }
 
+impl Shape {
+    /// The file it is in, for a scene at `path`.
+    pub fn file(&self, path: &Path) -> Option<PathBuf> {
+        match self {
+            Self::Mesh { file, .. } => Some(path.parent().unwrap_or(Path::new("")).join(file)),
+            _ => None,
+        }
+    }
+}
+
 impl std::fmt::Display for SceneAnimation {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
@@ -221,6 +260,12 @@ impl std::fmt::Display for SceneAnimation {
 }
 
 impl SceneCamera {
+    /// With so many pixels across, and as many down as its shape asks for.
+    pub fn resized(self, width: u32) -> Self {
+        let height = (f64::from(width) * f64::from(self.height) / f64::from(self.width)).round() as u32;
+        Self { width, height: height.max(1), ..self }
+    }
+
     fn validate(&self) -> Result<(), String> {
         let sight: [f32; 3] = std::array::from_fn(|k| self.target[k] - self.eye[k]);
         let side = glam::Vec3::from(sight).cross(self.up.into());

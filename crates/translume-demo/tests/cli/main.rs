@@ -8,8 +8,11 @@
 
 mod desk;
 mod environment;
+mod methods;
+mod profile;
 mod report;
 mod scatter;
+mod trace;
 
 use desk::{Desk, check_refusal, read_exr, refused, render, translume};
 use std::path::Path;

@@ -65,9 +65,7 @@ fn check_line(line: &str) -> Option<String> {
 /// A suite as quick as it gets, on a ball with an atlas of 64².
 pub fn run_suite(suite: &str, folder: &Path) {
     let folder = folder.to_str().unwrap();
-    let output = translume(&[
-        "report", "--suite", suite, "--quick", "--models", "sphere", "--atlas", "64", "-o", folder,
-    ]);
+    let output = translume(&["report", "sphere", "--suite", suite, "--quick", "--atlas", "64", "-o", folder]);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
 }
 
@@ -104,17 +102,18 @@ fn gather_agrees_with_rays_on_a_sphere() {
 fn reports_that_cannot_be_are_refused_before_the_work() {
     let desk = Desk::new();
     let report = |suite: &str, folder: &str, more: &[&str]| {
-        let mut arguments = vec!["report", "--suite", suite, "-o", folder];
+        let mut arguments = vec!["report", "-o", folder];
         arguments.extend_from_slice(more);
+        arguments.extend(["--suite", suite]);
         translume(&arguments)
     };
     let folder = desk.path("report");
     let folder = folder.to_str().unwrap();
     let blocked = format!("{}/inside", desk.file("letter.txt", "dear report"));
     let cases = [
-        (report("scattering", folder, &[]), ["--suite", "scattering", "known are gather, scatter"]),
+        (report("scattering", folder, &[]), ["--suite", "scattering", "known are methods, gather, scatter"]),
         (report("gather", &blocked, &[]), ["letter.txt", "cannot hold a report", "directory"]),
-        (report("gather", folder, &["--models", "absent.obj"]), ["absent.obj", "", ""]),
+        (report("gather", folder, &["absent.obj"]), ["absent.obj", "", ""]),
         (report("gather", folder, &["--atlas", "100000"]), ["--atlas", "100000", "choose at most"]),
     ];
     for (output, words) in cases {

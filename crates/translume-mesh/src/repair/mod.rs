@@ -69,7 +69,8 @@ pub fn repair(mesh: Mesh) -> Result<(Mesh, RepairReport), RepairError> {
 /// [`RepairOptions::orient`]: in each piece of the surface, joined by edges of two triangles, the fewer triangles are turned
 /// over to face the side of the others. A closed piece whose triangles face inwards is turned outside out, together with
 /// what lies inside it; one that lies inside another is otherwise left as it is, for it may be a cavity. A piece with only one
-/// side, such as a Möbius strip, is left alone and counted. Normals that then point away from their triangles are negated.
+/// side, such as a Möbius strip, is left alone and counted. Normals of turned triangles that then point away from them are negated, and all
+/// normals of a mesh where most point away from their triangles.
 ///
 /// All this, and the counts of edges, is after joining vertices at the same position. Repairing a second time with the same
 /// options changes nothing but the last bit of some normals.
@@ -98,6 +99,9 @@ pub fn repair_with(mut mesh: Mesh, options: &RepairOptions) -> Result<(Mesh, Rep
     }
     report.dropped_vertices = vertices::drop_unused(&mut mesh);
     report.computed_normals = vertices::complete_normals(&mut mesh);
+    if options.orient {
+        report.turned_normals = vertices::turn_normals(&mut mesh);
+    }
     if options.weld_distance.is_some() {
         report.welded_vertices = vertices::join_equal(&mut mesh);
         vertices::drop_unused(&mut mesh);

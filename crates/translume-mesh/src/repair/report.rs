@@ -18,6 +18,8 @@ pub struct RepairReport {
     pub welded_vertices: usize,
     /// Triangles turned over to face the side of their neighbours, or outwards.
     pub flipped_triangles: usize,
+    /// Normals negated because most of the mesh's pointed away from their triangles.
+    pub turned_normals: usize,
     /// Holes closed.
     pub filled_holes: usize,
     /// Edges with one triangle, kept: the surface has holes.
@@ -49,6 +51,7 @@ impl fmt::Display for RepairReport {
             (self.dropped_vertices, "unused vertices dropped"),
             (self.welded_vertices, "vertices welded"),
             (self.flipped_triangles, "triangles turned over"),
+            (self.turned_normals, "normals turned around"),
             (self.filled_holes, "holes closed"),
             (self.boundary_edges, "boundary edges"),
             (self.non_manifold_edges, "non-manifold edges"),

@@ -91,6 +91,19 @@ pub(super) fn drop_unused(mesh: &mut Mesh) -> usize {
     unused
 }
 
+/// Negates all normals where most of them point away from their triangles: the file means the other side. Returns how many that were.
+pub(super) fn turn_normals(mesh: &mut Mesh) -> usize {
+    let sides = smooth_normals(&mesh.positions, &mesh.triangles);
+    let points_away =
+        |(normal, side): (&[f32; 3], &[f32; 3])| Vec3::from(*normal).dot(Vec3::from(*side)) < 0.0;
+    let away = mesh.normals.iter().zip(&sides).filter(|&pair| points_away(pair)).count();
+    if 2 * away <= mesh.normals.len() {
+        return 0;
+    }
+    mesh.normals.as_flattened_mut().iter_mut().for_each(|x| *x = -*x);
+    mesh.normals.len()
+}
+
 /// Brings normals to unit length, and computes those that are missing, zero or not finite; returns whether there were such.
 pub(super) fn complete_normals(mesh: &mut Mesh) -> bool {
     mesh.normals.resize(mesh.positions.len(), [0.0; 3]);

@@ -60,9 +60,10 @@ proptest! {
             second.dropped_vertices,
             second.welded_vertices,
             second.flipped_triangles,
+            second.turned_normals,
             second.filled_holes,
         ];
-        prop_assert_eq!(changes, [0; 7], "{}; then {}", first, second);
+        prop_assert_eq!(changes, [0; 8], "{}; then {}", first, second);
         let edges = |r: &translume_mesh::RepairReport| (r.boundary_edges, r.non_manifold_edges, r.inconsistent_edges);
         prop_assert_eq!(edges(&first), edges(&second));
     }

@@ -124,6 +124,26 @@ fn unusable_normals_are_computed_and_others_kept() {
 }
 
 #[test]
+fn normals_of_the_other_side_are_turned_around() {
+    let (whole, _) = repair(sphere(2)).unwrap();
+    let turned = |share: usize| {
+        let mut mesh = whole.clone();
+        mesh.normals.iter_mut().skip(1).step_by(share).for_each(|n| *n = n.map(|x| -x));
+        repair(mesh).unwrap()
+    };
+    let (mesh, report) = turned(1);
+    // All but the first were turned, so the first is the one that is wrong now.
+    assert_eq!(report.turned_normals, whole.normals.len());
+    assert_eq!(mesh.normals[1..], whole.normals[1..]);
+    let (_, report) = turned(3);
+    assert_eq!(report.turned_normals, 0, "a third may be what the artist meant");
+    let as_it_is = RepairOptions { orient: false, ..RepairOptions::default() };
+    let mut inwards = whole.clone();
+    inwards.normals.as_flattened_mut().iter_mut().for_each(|x| *x = -*x);
+    assert_eq!(repair_with(inwards, &as_it_is).unwrap().1.turned_normals, 0);
+}
+
+#[test]
 fn errors_name_the_element() {
     let refused = |change: &dyn Fn(&mut Mesh)| {
         let mut mesh = cube();

@@ -57,7 +57,7 @@ fn outside(region: Option<Region>, receiver: &Receiver<'_>) -> bool {
 /// Share of the intensity towards `offset`, 0..=1.
 ///
 /// Source: `KHR_lights_punctual`, "Inner and Outer Cone Angles", in its own terms.
-fn falloff((direction, [inner, outer]): (DVec3, [f64; 2]), offset: DVec3) -> f64 {
+pub(crate) fn falloff((direction, [inner, outer]): (DVec3, [f64; 2]), offset: DVec3) -> f64 {
     let angle = offset.angle_between(direction);
     let share = (angle.cos() - outer.cos()) / (inner.cos() - outer.cos()).max(0.001);
     if angle.is_finite() { share.clamp(0.0, 1.0).powi(2) } else { 0.0 }

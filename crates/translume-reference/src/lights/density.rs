@@ -8,7 +8,7 @@ use crate::EnvironmentMap;
 use crate::rgb::mean;
 
 /// A density over directions, proportional to a map's mean radiance.
-pub(super) struct Density {
+pub(crate) struct Density {
     /// Power up to the end of each row.
     rows: Vec<f64>,
     /// Within each row, power up to the end of each pixel.
@@ -41,7 +41,7 @@ impl Density {
     }
 }
 
-fn running(values: impl Iterator<Item = f64>) -> Vec<f64> {
+pub(crate) fn running(values: impl Iterator<Item = f64>) -> Vec<f64> {
     values
         .scan(0.0, |sum, value| {
             *sum += value;
@@ -51,7 +51,7 @@ fn running(values: impl Iterator<Item = f64>) -> Vec<f64> {
 }
 
 /// The entry of a running sum that a share of the total falls into, never one that adds nothing, and how far into it.
-fn pick(sums: &[f64], share: f64) -> (usize, f64) {
+pub(crate) fn pick(sums: &[f64], share: f64) -> (usize, f64) {
     let target = share * sums[sums.len() - 1];
     let index = sums.partition_point(|&sum| sum <= target).min(sums.len() - 1);
     let before = if index == 0 { 0.0 } else { sums[index - 1] };

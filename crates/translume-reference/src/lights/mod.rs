@@ -5,15 +5,15 @@
 //! or none do, and between them the quotient's bias falls with the square of the number of rays.
 
 mod ambient;
-mod beam;
-mod density;
+pub(crate) mod beam;
+pub(crate) mod density;
 mod environment;
 mod polygon;
 mod receiver;
 mod rectangle;
 mod solid_angle;
 mod sphere;
-mod strata;
+pub(crate) mod strata;
 
 use std::sync::Arc;
 
@@ -120,6 +120,19 @@ pub enum Light {
         /// Whether the object shades itself.
         shadow: bool,
     },
+}
+
+impl Light {
+    /// Whether it takes many rays, and casts no sharp shadow.
+    pub(crate) fn is_soft(&self) -> bool {
+        match *self {
+            Self::Directional { .. } | Self::Point { .. } | Self::Spot { .. } => false,
+            Self::Ambient { shadow, .. }
+            | Self::Rectangle { shadow, .. }
+            | Self::Sphere { shadow, .. }
+            | Self::Environment { shadow, .. } => shadow,
+        }
+    }
 }
 
 /// The lights of a scene with what does not depend on the place.

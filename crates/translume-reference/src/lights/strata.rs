@@ -43,7 +43,7 @@ impl Strata {
 
 /// The output step of `SplitMix64` on its next state. Source: Steele, Lea and Flood 2014, "Fast splittable pseudorandom
 /// number generators".
-fn mix(state: u64) -> u64 {
+pub(crate) fn mix(state: u64) -> u64 {
     let z = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
     let z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
@@ -51,7 +51,7 @@ fn mix(state: u64) -> u64 {
 }
 
 /// A number in 0..1 from the upper 53 bits.
-fn unit(bits: u64) -> f64 {
+pub(crate) fn unit(bits: u64) -> f64 {
     (bits >> 11) as f64 * 2.0f64.powi(-53)
 }
 
@@ -85,7 +85,7 @@ pub(crate) fn cone(axis: DVec3, opening: f64, point: [f64; 2]) -> (DVec3, f64) {
     (frame(axis) * DVec3::new(x * across, y * across, 1.0 - height), height)
 }
 
-fn frame(axis: DVec3) -> DMat3 {
+pub(crate) fn frame(axis: DVec3) -> DMat3 {
     let (x, y) = axis.any_orthonormal_pair();
     DMat3::from_cols(x, y, axis)
 }

@@ -43,7 +43,7 @@ pub fn photon_beam(channel: &Channel) -> Numeric {
     Numeric::new(beam_reflectance(channel), grosjean(channel).1, 0.0, range(channel))
 }
 
-fn single(channel: &Channel, r: f64) -> f64 {
+pub(super) fn single(channel: &Channel, r: f64) -> f64 {
     let (sigma_t, eta) = (channel.sigma_t(), channel.ior);
     let critical = r * (eta * eta - 1.0).max(0.0).sqrt();
     let at = |t: f64| {

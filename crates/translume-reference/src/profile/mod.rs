@@ -4,12 +4,14 @@
 
 mod beam;
 mod diffusion;
+mod half_space;
 mod numeric;
 mod stack;
 mod table;
 
 pub use beam::{photon_beam, with_single};
 pub use diffusion::{Entry, better_dipole, half_space_albedo, normalised_diffusion};
+pub use half_space::{half_space, walks};
 pub use numeric::Numeric;
 pub use stack::{Sheet, stack};
 pub use table::table;

@@ -4,15 +4,13 @@
 use super::channel::{Channel, Grosjean};
 use super::dipole::Dipole;
 use super::radial::Radial;
-use super::sampled::{Sampled, Shape};
+use super::sampled::{RANGE, Sampled, Shape};
 use crate::fresnel;
 use crate::quadrature::{GAUSS_32, GAUSS_64, integrate};
 use std::f64::consts::PI;
 
 /// Beyond this many mean free paths a beam has left e^−40 of itself.
 const BEAM_LENGTH: f64 = 40.0;
-/// Sampled radii in mean free paths: far below and above what any texel or body needs, for both ends go on as power laws.
-const RANGE: [f64; 2] = [1e-5, 1e6];
 
 /// R_d of the beam: dipoles of d'Eon's kind along it, each held down near the surface by κ.
 pub(crate) fn beam(channel: &Channel) -> Sampled {
@@ -68,7 +66,7 @@ fn scaled_beam(channel: &Channel, grosjean: &Grosjean, r: f64) -> f64 {
 
 /// e^(decay·r) · α' ∫ σ_t' e^(−σ_t'(t + d)) F_t(η, t/d) t/(4πd³) dt for isotropic scattering. Starts where light is no longer
 /// reflected back inside; t = r sinh(u₀ + v²) tames the root there.
-fn scaled_single(channel: &Channel, decay: f64, r: f64) -> f64 {
+pub(crate) fn scaled_single(channel: &Channel, decay: f64, r: f64) -> f64 {
     let extinction = channel.extinction();
     let critical = r * (channel.ior * channel.ior - 1.0).max(0.0).sqrt();
     let start = (critical / r).asinh();

@@ -1,9 +1,10 @@
 //! Normalised diffusion: two exponentials fitted to random walks in an index-matched half-space.
 
+use super::albedo::albedo;
 use super::channel::Channel;
-use super::half_space::{Entry, albedo};
+use super::half_space::Entry;
 use super::radial::Radial;
-use crate::Error;
+use crate::{Error, Medium};
 use std::f64::consts::PI;
 
 /// Which of the three fits of Christensen and Burley 2015 shapes the profile.
@@ -21,6 +22,14 @@ pub enum BurleyFit {
 }
 
 impl BurleyFit {
+    /// The profile of a medium in two numbers per channel, for a host that diffuses by itself.
+    #[must_use]
+    pub fn shape(self, medium: &Medium) -> BurleyShape {
+        let channels = Channel::of(medium);
+        let each: [Burley; 3] = std::array::from_fn(|k| Burley::new(&channels[k], self, k));
+        BurleyShape { albedo: each.map(|c| c.albedo as f32), length: each.map(|c| c.length as f32) }
+    }
+
     /// # Errors
     /// [`Error::Profile`] names the channel whose length cannot be.
     pub(crate) fn validate(self) -> Result<(), Error> {
@@ -35,6 +44,15 @@ impl BurleyFit {
         }
         Ok(())
     }
+}
+
+/// What shapes the profile of each channel, RGB.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BurleyShape {
+    /// Albedo A of the surface, 0..=1.
+    pub albedo: [f32; 3],
+    /// d, mm: a quarter of the energy falls off as e^(−r/d), three quarters as e^(−r/3d).
+    pub length: [f32; 3],
 }
 
 /// R_d(r) = A/(8π d r)·(e^(−r/d) + e^(−r/3d)).
@@ -87,5 +105,26 @@ impl Radial for Burley {
     fn smooth_length(&self) -> f64 {
         // 1/r has no core. With one of d the error of the dual scatter rose from 0.17 % to 0.74 %, with 2d to 10 %.
         0.0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_shape_is_that_of_the_profile() {
+        let medium = Medium::SKIN1;
+        let shape = BurleyFit::Diffuse.shape(&medium);
+        for (k, channel) in Channel::of(&medium).iter().enumerate() {
+            let profile = Burley::new(channel, BurleyFit::Diffuse, k);
+            let (albedo, d) = (f64::from(shape.albedo[k]), f64::from(shape.length[k]));
+            // The share inside of 2d, in closed form.
+            let inside = 1.0 - 0.25 * (-2.0_f64).exp() - 0.75 * (-2.0 / 3.0_f64).exp();
+            let off = |length: f64| (profile.enclosed(2.0 * length) / (albedo * inside) - 1.0).abs();
+            // f32.
+            assert!(off(d) < 1e-6, "{k}: {}", off(d));
+            assert!(off(1.05 * d) > 1e-2, "5 % of the length must be noticed");
+        }
     }
 }

@@ -2,6 +2,9 @@
 
 #[cfg(test)]
 mod against_twin;
+#[cfg(test)]
+mod against_walks;
+mod albedo;
 mod beam;
 mod burley;
 mod channel;
@@ -11,6 +14,7 @@ mod hankel;
 mod layers;
 mod potential;
 pub(crate) mod radial;
+mod reflectance;
 mod sampled;
 mod tabulated;
 #[cfg(test)]
@@ -18,12 +22,14 @@ mod tests;
 
 use crate::layout::TermLayout;
 use crate::{Error, Medium, fresnel};
-pub use burley::BurleyFit;
+pub use burley::{BurleyFit, BurleyShape};
 use channel::Channel;
 use dipole::Dipole;
+pub use half_space::Entry;
 pub use layers::{Layer, Layers};
 use potential::Potential;
 use radial::Radial;
+pub use reflectance::Reflectance;
 use std::sync::Arc;
 pub use tabulated::Table;
 
@@ -40,15 +46,19 @@ pub(crate) fn smooth_length(channels: &Channels) -> f32 {
 ///
 /// All are for a flat half-space lit at one point. All but [`Dipole`](Self::Dipole) divide F_t by its hemispherical mean 1 − F_dr,ext on
 /// the way to the eye, so that what B says leaves does leave. Figures of accuracy, and which to take when: docs/method.md.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Profile {
+    /// A flat half-space with *all* orders of scattering, tabulated from random walks over r, α' and η (0.6 to 2.5; as there beyond). Light
+    /// enters along the normal or from all sides. Within 2 % of the walks wherever they are, near the entry too, and as bright as they
+    /// to 0.5 %: what is left is that no body is flat. Through thin parts lit from behind it is darker than a dipole, and reality brighter than
+    /// both. Scattering is isotropic with σ_s'.
+    HalfSpace(Entry),
     /// The classical dipole with L_o = F_t·B/π, to the letter of Gong et al. 2008 (eqs. 3–7). It loses 6 % at η = 1.3 and 9 % at
     /// η = 1.5 even on a plane under a uniform sky, because F_t is not normalised over the hemisphere.
     Dipole,
     /// The same dipole (Jensen et al. 2001, eq. 4) with F_t normalised. Right some mean free paths away in media that absorb little; too
     /// bright where they absorb much, too dark near the point of entry. The cheapest to set up.
-    #[default]
     DipoleNormalised,
     /// D'Eon 2012, "A Better Dipole": Grosjean's diffusion coefficient, the true Fresnel equations at the boundary (right for η < 1 too),
     /// fluence and flux mixed in the exitance. Right for absorbing media where the classical dipole is not; still one source at one
@@ -63,7 +73,7 @@ pub enum Profile {
     /// the phase function.
     WithSingleScattering(Diffusion),
     /// Christensen, Burley 2015, "Approximate Reflectance Profiles for Efficient Subsurface Scattering": fitted to random walks with
-    /// *all* orders of scattering at η = 1. The closest to reality of those without parameters where the surface reflects little
+    /// *all* orders of scattering at η = 1. Of the closed forms the closest to reality where the surface reflects little
     /// inside; the index of refraction does not change it, which makes it too bright at η of 1.3 and more. A of the surface
     /// comes from α' by Chandrasekhar's exact half-space, along the normal or from all sides as the fit says.
     NormalisedDiffusion(BurleyFit),
@@ -92,9 +102,19 @@ pub enum Diffusion {
     PhotonBeam,
 }
 
+impl Default for Profile {
+    /// The half-space that light enters from all sides: a lamp meets a body at all angles too.
+    fn default() -> Self {
+        Self::HalfSpace(Entry::Diffuse)
+    }
+}
+
 impl Profile {
-    /// Every profile without parameters, with its name. Normalised diffusion is that of diffuse entry unless the name says otherwise.
+    /// Every profile without parameters, with its name. Half-space and normalised diffusion are those of diffuse entry unless the name says
+    /// otherwise.
     pub const NAMES: &[(&'static str, Self)] = &[
+        ("half-space", Self::HalfSpace(Entry::Diffuse)),
+        ("half-space-searchlight", Self::HalfSpace(Entry::Normal)),
         ("dipole", Self::Dipole),
         ("dipole-normalised", Self::DipoleNormalised),
         ("dipole-oriented", Self::DipoleOriented),
@@ -201,6 +221,7 @@ impl Profile {
             return Arc::new(Dipole::classical(&Channel { scattering: 0.0, ..*channel }));
         }
         match self {
+            Self::HalfSpace(entry) => Arc::new(half_space::half_space(channel, *entry)),
             Self::Dipole | Self::DipoleNormalised => Arc::new(Dipole::classical(channel)),
             Self::DipoleOriented => Arc::new(Potential::new(channel)),
             Self::BetterDipole => Arc::new(Dipole::better(channel)),

@@ -8,6 +8,8 @@ use std::f64::consts::{LN_2, TAU};
 /// `interpolation_follows_the_profile`).
 const KNOTS_PER_OCTAVE: f64 = 12.0;
 const STEP: f64 = LN_2 / KNOTS_PER_OCTAVE;
+/// What to sample, in mean free paths: far below and above what any texel or body needs, for both ends go on as power laws.
+pub(crate) const RANGE: [f64; 2] = [1e-5, 1e6];
 /// Stands for nothing, and keeps the interpolation finite.
 const LEAST: f64 = 1e-290;
 

@@ -1,10 +1,10 @@
 //! A body whose frames end with the scatter, and a stopwatch.
 
-use super::method;
 use super::scene::Scene;
 use crate::error::Error;
 use crate::gpu::Gpu;
 use crate::report::bench::{PATIENCE, Repeats, median};
+use crate::report::method;
 use std::time::Instant;
 use translume::{
     Body, BodyDescriptor, Casters, Frame, Lighting, Medium, Method, Profile, Region, Stage, Translume,
@@ -34,6 +34,8 @@ impl<'a> Bench<'a> {
         let subject = &scene.subject;
         let descriptor = BodyDescriptor {
             mm_per_unit: subject.mm_per_unit,
+            // The reference's all pairs and integral are the dipole's.
+            profile: Profile::DipoleNormalised,
             ..BodyDescriptor::new(&subject.model.mesh, &subject.atlas)
         };
         let body = translume.create_body(&gpu.device, &descriptor)?;

@@ -19,7 +19,7 @@ pub struct Judge {
 impl Judge {
     /// The sum over all texels, in double precision.
     pub fn all_pairs(sources: &[Source], medium: &Medium, receivers: Vec<usize>) -> Self {
-        let exact = all_pairs::exitance(sources, &twin(medium).dipoles(), &receivers);
+        let exact = all_pairs::exitance(sources, &translume_twin::dipoles(medium), &receivers);
         Self { receivers, exact }
     }
 
@@ -33,7 +33,7 @@ impl Judge {
     ) -> Self {
         let lights: Vec<_> = lights.iter().filter_map(|light| twin_of.light(light)).collect();
         let places: Vec<_> = receivers.iter().map(|&k| sources[k].position).collect();
-        let converged = Converged::new(&twin_of.surface, &lights, &twin(medium), EDGE);
+        let converged = Converged::new(&twin_of.surface, &lights, &translume_twin::medium(medium), EDGE);
         Self { exact: converged.exitance(&places), receivers }
     }
 
@@ -42,14 +42,6 @@ impl Judge {
         let at = |&k: &usize| exitance[k][..3].iter().copied().map(f64::from).collect::<Vec<_>>();
         let found: Vec<f64> = self.receivers.iter().flat_map(at).collect();
         metrics::compare(&found, self.exact.as_flattened(), None)
-    }
-}
-
-fn twin(medium: &Medium) -> translume_reference::Medium {
-    translume_reference::Medium {
-        sigma_s_prime: medium.sigma_s_prime.map(f64::from),
-        sigma_a: medium.sigma_a.map(f64::from),
-        ior: medium.ior.into(),
     }
 }
 

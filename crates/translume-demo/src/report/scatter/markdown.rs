@@ -1,8 +1,9 @@
 //! Rows for people.
 
 use super::row::{Part, Row};
-use super::{bounds, method, plan::Plan};
+use super::{bounds, plan::Plan};
 use crate::report::date;
+use crate::report::method;
 use translume::Method;
 use translume_reference::metrics::Metrics;
 

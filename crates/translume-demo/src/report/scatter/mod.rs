@@ -6,7 +6,6 @@ mod bench;
 mod bounds;
 mod judge;
 mod markdown;
-mod method;
 mod plan;
 mod plot;
 mod row;

@@ -47,9 +47,9 @@ fn point(row: &Row) -> Option<(f64, f64)> {
     row.figures.as_ref().map(|figures| (row.time_ms.max(0.01), figures.relative_rmse.max(1e-4)))
 }
 
-fn draw(panel: &Area<'_>, title: &str, rows: &[&Row]) -> Drawn {
+fn draw<'a>(panel: &Area<'a>, title: &str, rows: &[&Row]) -> Drawn<SVGBackend<'a>> {
     let points: Vec<_> = rows.iter().filter_map(|row| point(row)).collect();
-    let mut chart = chart(panel, title, "exitance", &points)?;
+    let mut chart = chart(panel, title, "exitance", &points, 1.0)?;
     for (k, name) in FAMILIES.into_iter().enumerate() {
         let colour = COLOURS[k].filled();
         let mut media: Vec<&str> = rows.iter().map(|row| row.medium).collect();
@@ -66,5 +66,5 @@ fn draw(panel: &Area<'_>, title: &str, rows: &[&Row]) -> Drawn {
             }
         }
     }
-    legend(&mut chart)
+    legend(&mut chart, SeriesLabelPosition::LowerLeft, 1.0)
 }

@@ -1,8 +1,8 @@
 //! One measurement, and all of them as CSV.
 
 use super::bench::Run;
-use super::method;
 use crate::report::csv::quoted;
+use crate::report::method;
 use translume::{Method, Profile};
 use translume_reference::metrics::Metrics;
 
@@ -76,7 +76,7 @@ impl Row {
     /// For tests: no figures, no time.
     #[cfg(test)]
     pub fn example(part: Part, method: Method) -> Self {
-        let case = Case { scene: "egg, raw", atlas: 512, medium: "wax", profile: Profile::default() };
+        let case = Case { scene: "egg, raw", atlas: 512, medium: "wax", profile: Profile::DipoleNormalised };
         let run = Run { exitance: vec![[1.0, 1.0, 1.0, 30.0]; 2], time_ms: 1.0, overflow: None };
         Self::new(part, &case, method, &run)
     }

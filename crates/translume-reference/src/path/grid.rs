@@ -1,0 +1,162 @@
+//! Cells around a mesh that tell how far away its surface is at least.
+
+use glam::{DVec3, IVec3};
+
+use crate::Surface;
+
+/// Cells along the longest side of the grid.
+pub(super) const CELLS: f64 = 128.0;
+
+/// Cubic cells around the surface. Each tells in how many steps, diagonal ones too, the next cell is reached that the surface may
+/// touch: more than 0 inside the body, less outside.
+pub(super) struct Grid {
+    /// Lowest and highest coordinates of the surface.
+    pub extent: [DVec3; 2],
+    low: DVec3,
+    edge: f64,
+    size: IVec3,
+    steps: Vec<i8>,
+}
+
+impl Grid {
+    pub fn new(surface: &Surface) -> Self {
+        let extent @ [low, high] = extent(surface);
+        let edge = (high - low).max_element() / CELLS;
+        // One cell more on each side stays empty, so that the outside is connected.
+        let low = low - 1.5 * edge;
+        let size = ((high - low) / edge).as_ivec3() + 3;
+        let mut grid = Self { extent, low, edge, size, steps: Vec::new() };
+        let mut touched = vec![false; size.element_product() as usize];
+        grid.for_each_touched(surface, |cell| touched[cell] = true);
+        grid.steps = grid.distances(&touched);
+        grid.tell_sides(surface);
+        grid
+    }
+
+    /// Calls `each` for cells that a triangle's box and its plane pass through.
+    fn for_each_touched(&self, surface: &Surface, mut each: impl FnMut(usize)) {
+        // A hair wider, for the rounding of cell numbers.
+        let hair = 1e-9 * self.edge;
+        for triangle in 0..surface.triangles.len() as u32 {
+            let [a, b, c] = surface.corners(triangle);
+            let normal = (b - a).cross(c - a);
+            let reach = normal.abs().element_sum() * (0.5 * self.edge + hair);
+            let first = self.cell(a.min(b).min(c) - hair);
+            let last = self.cell(a.max(b).max(c) + hair);
+            for_each_cell(first, last, |cell| {
+                if normal.dot(self.middle(cell) - a).abs() <= reach {
+                    each(self.index(cell));
+                }
+            });
+        }
+    }
+
+    fn middle(&self, cell: IVec3) -> DVec3 {
+        self.low + (cell.as_dvec3() + 0.5) * self.edge
+    }
+
+    fn cell(&self, point: DVec3) -> IVec3 {
+        ((point - self.low) / self.edge).floor().as_ivec3()
+    }
+
+    fn index(&self, cell: IVec3) -> usize {
+        ((cell.z * self.size.y + cell.y) * self.size.x + cell.x) as usize
+    }
+
+    fn holds(&self, cell: IVec3) -> bool {
+        cell.cmpge(IVec3::ZERO).all() && cell.cmplt(self.size).all()
+    }
+
+    /// As that of the body.
+    pub fn clearance(&self, point: DVec3) -> f64 {
+        let place = (point - self.low) / self.edge;
+        // Rounding towards zero is rounding down from here on; casts saturate, and what is not a number is below nothing.
+        if place.cmplt(DVec3::ZERO).any() {
+            return -1.0;
+        }
+        let cell = IVec3::new(place.x as i32, place.y as i32, place.z as i32);
+        if cell.cmpge(self.size).any() {
+            return -1.0;
+        }
+        let steps = f64::from(self.steps[self.index(cell)]);
+        if steps <= 0.0 {
+            return steps;
+        }
+        let inset = place - cell.as_dvec3();
+        let inset = inset.min(1.0 - inset).min_element();
+        (steps - 1.0 + inset) * self.edge
+    }
+
+    /// Steps from each cell to a touched one: a pass in the order of the cells and one back, each from half of the neighbours
+    /// (Rosenfeld and Pfaltz 1966).
+    fn distances(&self, touched: &[bool]) -> Vec<i8> {
+        let mut steps: Vec<i8> = touched.iter().map(|&touched| if touched { 0 } else { i8::MAX }).collect();
+        let neighbours: Vec<IVec3> =
+            (0..13).map(|k| IVec3::new(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1)).collect();
+        let cells: Vec<IVec3> = self.cells().collect();
+        let mut relax = |cell: &IVec3, sign: i32| {
+            let near =
+                neighbours.iter().map(|offset| *cell + *offset * sign).filter(|&other| self.holds(other));
+            let least = near.map(|other| steps[self.index(other)]).min().unwrap_or(i8::MAX);
+            let own = &mut steps[self.index(*cell)];
+            *own = (*own).min(least.saturating_add(1));
+        };
+        cells.iter().for_each(|cell| relax(cell, 1));
+        cells.iter().rev().for_each(|cell| relax(cell, -1));
+        steps
+    }
+
+    fn cells(&self) -> impl Iterator<Item = IVec3> + use<> {
+        let IVec3 { x, y, z } = self.size;
+        (0..z).flat_map(move |k| (0..y).flat_map(move |j| (0..x).map(move |i| IVec3::new(i, j, k))))
+    }
+
+    /// Makes the steps of connected cells negative where one of them is outside.
+    fn tell_sides(&mut self, surface: &Surface) {
+        let mut seen = vec![false; self.steps.len()];
+        for start in self.cells() {
+            if seen[self.index(start)] || self.steps[self.index(start)] == 0 {
+                continue;
+            }
+            let outside = !contains(surface, self.middle(start));
+            let mut pending = vec![start];
+            seen[self.index(start)] = true;
+            while let Some(cell) = pending.pop() {
+                if outside {
+                    let index = self.index(cell);
+                    self.steps[index] = -self.steps[index];
+                }
+                for other in IVec3::AXES.into_iter().flat_map(|axis| [cell + axis, cell - axis]) {
+                    if self.holds(other) && !seen[self.index(other)] && self.steps[self.index(other)] != 0 {
+                        seen[self.index(other)] = true;
+                        pending.push(other);
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn for_each_cell(first: IVec3, last: IVec3, mut each: impl FnMut(IVec3)) {
+    for z in first.z..=last.z {
+        for y in first.y..=last.y {
+            (first.x..=last.x).for_each(|x| each(IVec3::new(x, y, z)));
+        }
+    }
+}
+
+fn extent(surface: &Surface) -> [DVec3; 2] {
+    let corners = || surface.positions.iter().map(|&p| DVec3::from(p));
+    [corners().fold(DVec3::INFINITY, DVec3::min), corners().fold(DVec3::NEG_INFINITY, DVec3::max)]
+}
+
+/// Whether rays leave the surface from here more often than they enter it. The direction is one that edges seldom lie along.
+fn contains(surface: &Surface, point: DVec3) -> bool {
+    let direction = DVec3::new(0.563_1, 0.687_3, 0.458_9).normalize();
+    let mut sum = 0;
+    surface.every_hit(point.to_array(), direction.to_array(), f64::INFINITY, |_, normal| {
+        sum += if normal.dot(direction) > 0.0 { 1 } else { -1 };
+        f64::INFINITY
+    });
+    sum > 0
+}
