@@ -90,7 +90,7 @@ impl<'a> Converged<'a> {
 impl<'a, P: Profile> Converged<'a, P> {
     /// Casts light onto `surface` at steps of `target_edge` mm or less; shadow edges are as sharp as that, and light from an extent is linear in between. If the steps
     /// would need more than a million patches they grow until they do not; [`edge`](Self::edge) tells. A profile of each channel; `ior`
-    /// says how light enters. Where a profile has no bound at r = 0, patches are cut to a hundredth of its decay length and no
+    /// says how light enters. Where a profile has no bound at r = 0, patches are cut to a hundredth of its decay length, or a tenth of their own, and no
     /// further, and what is nearer is as good as seven points.
     #[must_use]
     pub fn with_profiles(
@@ -163,16 +163,23 @@ impl<'a, P: Profile> Converged<'a, P> {
                 continue;
             }
             let r = receiver.distance(*position);
-            let nearest = |profile: &P| if profile.core() > 0.0 { r } else { r.max(0.1 * core(profile)) };
+            let nearest =
+                |profile: &P| if profile.core() > 0.0 { r } else { r.max(0.1 * self.core(profile)) };
             let reflectance = |profile: &P| profile.reflectance(nearest(profile));
             accumulate(sum, std::array::from_fn(|k| reflectance(&self.profiles[k]) * power[k]), 1.0);
         }
     }
 
+    /// Length below which patches are cut no further, mm. For a profile without a bound at r = 0 a hundredth of its decay length, and, as that
+    /// may be long where hardly anything absorbs, a tenth of a patch.
+    fn core(&self, profile: &P) -> f64 {
+        if profile.core() > 0.0 { profile.core() } else { (0.01 / profile.decay()).min(0.1 * self.edge) }
+    }
+
     /// The longest edge a patch may have at a distance from the receiver.
     fn longest_edge(&self, distance: f64) -> f64 {
         let limit = |profile: &P| {
-            let scale = EDGE_PER_DISTANCE * distance.max(core(profile));
+            let scale = EDGE_PER_DISTANCE * distance.max(self.core(profile));
             // Farther than 8 decay lengths, what is left is small enough for a coarser step.
             let decay = (1.0 / profile.decay()).max(distance / 8.0);
             scale.min(EDGE_PER_DECAY * decay)
@@ -180,11 +187,6 @@ impl<'a, P: Profile> Converged<'a, P> {
         let scattering = self.profiles.iter().filter(|profile| profile.total() > 0.0);
         scattering.map(limit).fold(f64::INFINITY, f64::min)
     }
-}
-
-/// Length below which patches are cut no further, mm.
-fn core(profile: &impl Profile) -> f64 {
-    if profile.core() > 0.0 { profile.core() } else { 0.01 / profile.decay() }
 }
 
 impl Patch {
@@ -338,6 +340,25 @@ mod tests {
             assert_rel(b[1], total, tolerance, "plane");
             assert!((b[1] / (1.05 * total) - 1.0).abs() > tolerance, "5 % must be noticed");
         }
+    }
+
+    /// Without absorption the exponential that says how far to cut is none.
+    #[test]
+    fn white_and_unbounded_is_finite() {
+        let (positions, triangles) = square(20.0, 0.0);
+        let surface = Surface::flat(positions, triangles);
+        let lights = [uniform()];
+        let exitance = |decay: f64| {
+            // R_d = (2 + r) e^(−decay r) / (2πr (1 + r)³), of total 3/2 without a decay.
+            let white = |r: f64| (2.0 + r) / (2.0 * PI * r * (1.0 + r).powi(3)) * (-decay * r).exp();
+            let profiles = [(); 3].map(|()| crate::profile::Numeric::new(white, decay, 0.0, [1e-4, 1e3]));
+            Converged::with_profiles(&surface, &lights, 1.0, profiles, 5.0).exitance(&[[0.37, 0.0, -0.11]])[0]
+                [0]
+        };
+        let (white, nearly) = (exitance(0.0), exitance(1e-4));
+        // 20 mm lose 1/20 of it, and what is nearer than a tenth of an edge is as good as seven points.
+        assert!((white / nearly - 1.0).abs() < 0.02 && (1.2..1.5).contains(&white), "{white} {nearly}");
+        assert!((white / exitance(0.3) - 1.0).abs() > 0.02, "a decay that counts must be noticed");
     }
 
     /// The sphere's closed form, approached with the square of the facets' edge.

@@ -56,7 +56,8 @@ fn flat<T: Shown>(picture: &[T]) -> Vec<f64> {
     picture.iter().flat_map(Shown::rgb).collect()
 }
 
-/// Of pixel and pixel. `error`: standard errors of the truth. `None` where nothing is to be compared, or the truth is dark.
+/// Of pixel and pixel. `error`: standard errors of the truth. `None` where nothing is to be compared, the truth is dark, or
+/// either is no number.
 pub fn against<A: Shown, B: Shown>(
     picture: &[A],
     truth: &[B],
@@ -65,7 +66,7 @@ pub fn against<A: Shown, B: Shown>(
     let (found, wanted) = (flat(picture), flat(truth));
     let figures = metrics::compare(&found, &wanted, None)?;
     let mean = mean(&wanted);
-    if mean.is_nan() || mean <= 0.0 {
+    if !mean.is_finite() || mean <= 0.0 || !figures.relative_rmse.is_finite() {
         return None;
     }
     let own = error.map_or(0.0, |error| mean_square(&flat(error)) / (mean * mean));
@@ -111,6 +112,7 @@ mod tests {
         assert!((noise(&truth, &error).unwrap() - 0.06).abs() < 1e-12);
         assert_eq!(against(&picture, &[[0.0_f64; 3]; 3], None), None);
         assert_eq!(against::<[f32; 3], [f64; 3]>(&[], &[], None), None);
+        assert_eq!(against(&[[f32::NAN; 3]; 3], &truth, Some(&error)), None, "no number is no success");
         assert_eq!(masked(&[1, 2, 3], &[true, false, true]), [1, 3]);
     }
 }

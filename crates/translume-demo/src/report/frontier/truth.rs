@@ -175,7 +175,8 @@ fn twins(profile: &Profile, medium: &Medium) -> Result<Option<[Numeric; 3]>, Err
     let channel = |k: usize| {
         let mean_free_path = 1.0 / f64::from(medium.sigma_s_prime[k] + medium.sigma_a[k]);
         let range = [1e-4, 1e3].map(|x| x * mean_free_path);
-        Numeric::new(|r| table.at(r)[k], table.decay()[k], 0.0, range)
+        // As 1/r near 0: of what lies nearer than this, seven points of a patch are enough.
+        Numeric::new(|r| table.at(r)[k], table.decay()[k], 0.02 * mean_free_path, range)
     };
     Ok(Some([0, 1, 2].map(channel)))
 }
