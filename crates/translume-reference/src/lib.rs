@@ -21,6 +21,7 @@ pub mod cluster;
 pub mod composite;
 pub mod converged;
 pub mod deform;
+mod dice;
 pub mod dipole;
 pub mod environment;
 pub mod fresnel;

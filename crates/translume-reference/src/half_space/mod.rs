@@ -8,7 +8,7 @@
 //! and Neutron Transport Problems").
 
 mod decay;
-mod dice;
+mod direction;
 mod tally;
 mod walk;
 

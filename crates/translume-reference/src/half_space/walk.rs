@@ -1,8 +1,9 @@
 //! One walk after the other.
 
-use super::dice::{Dice, around};
+use super::direction::{around, scatter};
 use super::tally::Tally;
 use super::{Entry, Setup};
+use crate::dice::Dice;
 use crate::fresnel::transmittance;
 use std::f64::consts::TAU;
 
@@ -17,7 +18,7 @@ const LEAST_WEIGHT: f64 = 1e-10;
 /// A number of walks with the dice of this batch, as means over them.
 pub(super) fn batch(setup: &Setup, batch: u64, photons: u64) -> Tally {
     let mut tally = Tally::new(setup);
-    let mut dice = Dice::new(setup.seed, batch);
+    let mut dice = Dice::stream(setup.seed, batch);
     let mut weights = vec![0.0; setup.albedos.len()];
     for _ in 0..photons {
         weights.fill(1.0);
@@ -80,7 +81,7 @@ impl Walk<'_> {
                 }
                 self.weights.iter_mut().for_each(|weight| *weight *= 2.0);
             }
-            self.direction = dice.scatter(self.direction, self.setup.anisotropy);
+            self.direction = scatter(dice, self.direction, self.setup.anisotropy);
         }
     }
 
@@ -92,7 +93,7 @@ impl Walk<'_> {
 
     /// To the next scattering, by way of faces that throw it back. False where it has left.
     fn fly(&mut self, dice: &mut Dice, tally: &mut Tally) -> bool {
-        let mut left = dice.flight();
+        let mut left = dice.exponential();
         loop {
             let down = self.direction[2];
             let below = down > 0.0;

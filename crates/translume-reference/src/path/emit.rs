@@ -4,8 +4,8 @@ use std::f64::consts::{PI, TAU};
 
 use glam::DVec3;
 
-use super::dice::Dice;
 use super::lamp::{Lamp, opening};
+use crate::dice::Dice;
 use crate::lights::beam::falloff;
 use crate::lights::strata::{cone, disc, frame};
 use crate::rgb::{mean, scale};

@@ -1,10 +1,10 @@
 //! Where light is worth following from: cells of the lights' squares of directions, chosen by what came of them.
 
 use super::PathTracer;
-use super::dice::Dice;
 use super::emit::Ray;
 use super::lamp::Lamp;
 use super::walk::Splat;
+use crate::dice::Dice;
 use crate::lights::density::{pick, running};
 use crate::rgb::{accumulate, mean, scale};
 

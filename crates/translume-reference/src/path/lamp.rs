@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
-use super::dice::Dice;
+use crate::dice::Dice;
 use crate::lights::Region;
 use crate::lights::beam::falloff;
 use crate::lights::density::Density;

@@ -140,9 +140,9 @@ fn open_edges(surface: &Surface) -> usize {
 
 #[cfg(test)]
 mod tests {
-    use super::super::dice::Dice;
     use super::super::grid::CELLS;
     use super::*;
+    use crate::dice::Dice;
     use crate::testing::octasphere;
 
     /// A thick shell: a sphere with a hollow one in its middle.

@@ -13,7 +13,6 @@
 //! of the picture: what is left is the subsurface component. Light is shadowed by the body whatever `shadow` says, refracted by faces
 //! whatever normals they are shaded with, and lights stand outside the body.
 
-mod dice;
 mod emit;
 mod film;
 mod grid;

@@ -3,10 +3,10 @@
 use rayon::prelude::*;
 
 use super::PathTracer;
-use super::dice::Dice;
 use super::film::Film;
 use super::guide::Guide;
 use super::walk::Splat;
+use crate::dice::Dice;
 
 /// Paths that one thread follows at a time, and how many such parts are kept until their order is settled.
 const PART: u64 = 1024;

@@ -39,6 +39,11 @@ fn choose(both: [Crossing; 2], leaving: bool) -> Option<Crossing> {
     Some(both[usize::from(leaving)]).filter(|crossing| crossing.t >= 0.0)
 }
 
+/// Calls `found` for those of both that lie ahead.
+fn ahead(both: Option<[Crossing; 2]>, found: &mut dyn FnMut(Crossing)) {
+    both.into_iter().flatten().filter(|crossing| crossing.t >= 0.0).for_each(found);
+}
+
 /// An exact sphere.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ball {
@@ -62,8 +67,7 @@ impl Ball {
 
 impl Shape for Ball {
     fn crossings(&self, origin: DVec3, direction: DVec3, found: &mut dyn FnMut(Crossing)) {
-        let both = self.both(origin, direction);
-        both.into_iter().flatten().filter(|crossing| crossing.t >= 0.0).for_each(found);
+        ahead(self.both(origin, direction), found);
     }
 
     fn first(&self, origin: DVec3, direction: DVec3, leaving: bool, within: f64) -> Option<Crossing> {
@@ -115,8 +119,7 @@ impl Block {
 
 impl Shape for Block {
     fn crossings(&self, origin: DVec3, direction: DVec3, found: &mut dyn FnMut(Crossing)) {
-        let both = self.both(origin, direction);
-        both.into_iter().flatten().filter(|crossing| crossing.t >= 0.0).for_each(found);
+        ahead(self.both(origin, direction), found);
     }
 
     fn first(&self, origin: DVec3, direction: DVec3, leaving: bool, within: f64) -> Option<Crossing> {

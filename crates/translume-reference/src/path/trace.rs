@@ -4,12 +4,12 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::PathTracer;
-use super::dice::Dice;
 use super::film::Film;
 use super::photons::{self, Photons};
 use super::volume::Group;
 use super::walk::Harvest;
 use crate::composite::Camera;
+use crate::dice::Dice;
 
 /// Pixels between two looks at the clock.
 const BATCH: usize = 2048;

@@ -4,8 +4,8 @@ use std::f64::consts::{FRAC_1_PI, TAU};
 
 use glam::DVec3;
 
-use super::dice::Dice;
 use crate::Medium;
+use crate::dice::Dice;
 use crate::lights::strata::frame;
 
 /// A homogeneous scattering medium behind a smooth boundary, without the reduction that diffusion makes.

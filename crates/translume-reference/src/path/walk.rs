@@ -2,13 +2,13 @@
 
 use glam::DVec3;
 
-use super::dice::Dice;
 use super::emit::Ray;
 use super::film::Film;
 use super::lamp::Lamp;
 use super::volume::Group;
 use super::way::{Way, inside, is_lit, segments, surely_inside};
 use super::{Crossing, PathTracer};
+use crate::dice::Dice;
 use crate::fresnel::{refracted_cos, transmittance};
 use crate::lights::Region;
 use crate::rgb::accumulate;

@@ -90,10 +90,10 @@ impl Way {
 
 #[cfg(test)]
 mod tests {
-    use super::super::dice::Dice;
     use super::super::{Ball, Closed};
     use super::*;
     use crate::Surface;
+    use crate::dice::Dice;
     use crate::testing::octasphere;
 
     fn up(origin: DVec3) -> Way {
