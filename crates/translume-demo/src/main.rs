@@ -1,5 +1,6 @@
 //! `translume`: render, inspect and measure translucent models.
 
+mod canvas;
 mod cli;
 mod environment;
 mod error;

@@ -66,9 +66,9 @@ pub struct Entrant {
 }
 
 /// The profile that Dachsbacher and Stamminger sum, and the paper's.
-pub const DIPOLE: &str = "dipole-normalised";
+const DIPOLE: &str = "dipole-normalised";
 /// The profile of screen-space diffusion.
-pub const BURLEY: &str = "normalised-diffusion";
+const BURLEY: &str = "normalised-diffusion";
 
 /// The name of the profile that a body has unless told otherwise.
 pub fn default_profile() -> &'static str {

@@ -20,7 +20,7 @@ use crate::error::Error;
 use crate::gpu::Gpu;
 use crate::picture::{Output, Picture};
 use crate::progress;
-use entrant::{BURLEY, DIPOLE, Entrant, Family, default_profile};
+use entrant::{Entrant, Family, default_profile};
 use indicatif::ProgressBar;
 use page::Section;
 use row::Row;
@@ -88,8 +88,12 @@ impl Study<'_> {
             // A pixel's integrals take some ten milliseconds, and so many tell an error to about 5 %.
             Patience { samples: 250, noise: 0.03, most: Duration::from_secs(10) }
         };
-        let mut wanted = vec![default_profile(), DIPOLE, BURLEY];
-        wanted.dedup();
+        let mut wanted: Vec<&'static str> = Vec::new();
+        for Entrant { profile, .. } in entrant::all(self.quick) {
+            if !wanted.contains(&profile) {
+                wanted.push(profile);
+            }
+        }
         let truths = Truths::new(&stage, &wanted, patience, &told)?;
         if let Some(traced) = &truths.traced {
             log::info!("{}: {} paths a pixel in {:.1} s", stage.name, traced.samples, traced.seconds);
@@ -115,8 +119,7 @@ impl Study<'_> {
         Ok(Section {
             summary: summary(&truths, own),
             pictures: self.pictures(&stage, &truths, &kept)?,
-            plot: plot::svg(&own.iter().collect::<Vec<_>>(), &stage.name)
-                .map_err(|problem| self.blame(&problem))?,
+            plot: plot::svg(own, &stage.name).map_err(|problem| self.blame(&problem))?,
             name: stage.name,
             purpose: stage.purpose,
         })
@@ -167,11 +170,10 @@ impl Study<'_> {
     }
 
     fn write(&self, sections: &[Section], rows: &[Row]) -> Result<(), Error> {
-        let all: Vec<&Row> = rows.iter().collect();
         let title = "All scenes";
-        let overview = plot::svg(&all, title).map_err(|problem| self.blame(&problem))?;
+        let overview = plot::svg(rows, title).map_err(|problem| self.blame(&problem))?;
         write(self.folder, "pareto.svg", &overview)?;
-        let (width, pixels) = plot::pixels(&all, title).map_err(|problem| self.blame(&problem))?;
+        let (width, pixels) = plot::pixels(rows, title).map_err(|problem| self.blame(&problem))?;
         let picture = Picture::from_bytes(width, &pixels);
         Output::new(&self.folder.join("pareto.png"))?.write(&[picture])?;
         write(self.folder, "report.csv", &row::csv(rows, &self.gpu.adapter))?;

@@ -20,7 +20,7 @@ const PANELS: [(Truth, &str); 2] = [
 type Line = (Family, Vec<(f64, f64)>);
 
 /// Of one scene, or of all: then each point is the geometric mean over the scenes where that setting ran.
-pub fn svg(rows: &[&Row], title: &str) -> Result<String, String> {
+pub fn svg(rows: &[Row], title: &str) -> Result<String, String> {
     let mut text = String::new();
     {
         let root = SVGBackend::with_string(&mut text, (2 * PANEL.0, PANEL.1)).into_drawing_area();
@@ -31,7 +31,7 @@ pub fn svg(rows: &[&Row], title: &str) -> Result<String, String> {
 }
 
 /// The same as pixels: width, and RGB of 8 bits.
-pub fn pixels(rows: &[&Row], title: &str) -> Result<(u32, Vec<u8>), String> {
+pub fn pixels(rows: &[Row], title: &str) -> Result<(u32, Vec<u8>), String> {
     let (width, height) = (2 * PANEL.0 * SCALE, PANEL.1 * SCALE);
     let mut buffer = vec![255; 3 * (width * height) as usize];
     {
@@ -42,7 +42,7 @@ pub fn pixels(rows: &[&Row], title: &str) -> Result<(u32, Vec<u8>), String> {
     Ok((width, buffer))
 }
 
-fn draw<B: DrawingBackend>(root: &DrawingArea<B, Shift>, rows: &[&Row], title: &str, scale: f64) -> Drawn<B> {
+fn draw<B: DrawingBackend>(root: &DrawingArea<B, Shift>, rows: &[Row], title: &str, scale: f64) -> Drawn<B> {
     axis::fonts();
     root.fill(&WHITE)?;
     for (panel, (truth, what)) in root.split_evenly((1, PANELS.len())).iter().zip(PANELS) {
@@ -66,10 +66,10 @@ fn draw<B: DrawingBackend>(root: &DrawingArea<B, Shift>, rows: &[&Row], title: &
 }
 
 /// Points of each family; those of several scenes that stand for one setting become one.
-fn lines(rows: &[&Row], truth: Truth) -> Vec<Line> {
+fn lines(rows: &[Row], truth: Truth) -> Vec<Line> {
     let mut lines: Vec<Line> = Vec::new();
     for family in Family::ALL {
-        let own: Vec<&&Row> = rows.iter().filter(|row| row.family == family && !row.is_model).collect();
+        let own: Vec<&Row> = rows.iter().filter(|row| row.family == family && !row.is_model).collect();
         let mut settings: Vec<&str> = own.iter().map(|row| row.setting.as_str()).collect();
         settings.sort_unstable();
         settings.dedup();
@@ -117,7 +117,6 @@ mod tests {
     #[test]
     fn both_kinds_of_file_show_something() {
         let rows = [example(Family::Dual, 10.0, 0.01), example(Family::ScreenSpace, 2.0, 0.3)];
-        let rows: Vec<&Row> = rows.iter().collect();
         let text = svg(&rows, "egg").unwrap();
         assert!(
             text.starts_with("<svg") && text.contains("dual tree") && text.contains("screen-space diffusion")

@@ -2,6 +2,7 @@
 
 use super::entrant::{Entrant, Way};
 use super::stage::Stage;
+use crate::canvas::Canvas;
 use crate::error::Error;
 use crate::gpu::Gpu;
 use crate::report::bench::{PATIENCE, Repeats, median};
@@ -9,8 +10,8 @@ use crate::report::method;
 use std::collections::BTreeMap;
 use std::time::Instant;
 use translume::{
-    Body, BodyDescriptor, Composite, CompositeTarget, CompositeView, Evaluate, Frame, Gloss, Light, Lighting,
-    Method, Profile, ShadowOptions, Stage as Until, Translume, View, readback, wgpu,
+    Body, BodyDescriptor, CompositeView, Evaluate, Frame, Gloss, Light, Lighting, Method, Profile,
+    ShadowOptions, Stage as Until, Translume, View, readback, wgpu,
 };
 use translume_rivals::{Geometry, Renderer};
 
@@ -32,16 +33,12 @@ pub struct Shot<'a> {
     translume: &'a Translume,
     stage: &'a Stage,
     repeats: Repeats,
-    composite: Composite,
-    colour: wgpu::Texture,
-    depth: wgpu::TextureView,
+    canvas: Canvas,
     /// By the width of their atlas.
     bodies: BTreeMap<u32, (Body, CompositeView)>,
     frames: u32,
 }
 
-const COLOUR: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
-const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 /// A step by which the body moves between frames, over its size: everything is computed anew, and nothing looks different.
 const NUDGE: f32 = 1e-6;
 /// Texels of a lamp's depth map along an edge for each texel of the atlas along one: both cost alike, and are as fine as each other.
@@ -51,29 +48,12 @@ const LEAST_ATLAS: u32 = 64;
 
 impl<'a> Shot<'a> {
     pub fn new(gpu: &'a Gpu, translume: &'a Translume, stage: &'a Stage) -> Self {
-        let target =
-            CompositeTarget { format: COLOUR, depth: Some((DEPTH, wgpu::CompareFunction::Less)), samples: 1 };
-        let [width, height] = stage.pixels();
-        let texture = |format| {
-            gpu.device.create_texture(&wgpu::TextureDescriptor {
-                label: Some("shot"),
-                size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
-                mip_level_count: 1,
-                sample_count: 1,
-                dimension: wgpu::TextureDimension::D2,
-                format,
-                usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
-                view_formats: &[],
-            })
-        };
         Self {
             gpu,
             translume,
             stage,
             repeats: Repeats { warm_up: 0, timed: 1 },
-            composite: translume.composite(&gpu.device, target),
-            colour: texture(COLOUR),
-            depth: texture(DEPTH).create_view(&wgpu::TextureViewDescriptor::default()),
+            canvas: Canvas::new(&gpu.device, translume, stage.pixels()),
             bodies: BTreeMap::new(),
             frames: 0,
         }
@@ -113,7 +93,6 @@ impl<'a> Shot<'a> {
         profile: &str,
     ) -> Result<Taken, Error> {
         let profile = Profile::named(profile)?;
-        self.make(atlas)?;
         self.with_body(atlas, |shot, body, view| {
             // Points need the dual scatter, and other methods texels.
             body.set_evaluate(Evaluate::PerTexel)?;
@@ -138,13 +117,12 @@ impl<'a> Shot<'a> {
             let evaluations = (evaluate == Evaluate::PerTexel && method::counts(method))
                 .then(|| shot.evaluations(body))
                 .transpose()?;
-            let picture = readback::texture(&shot.gpu.device, &shot.gpu.queue, &shot.colour, 0)?;
+            let picture = readback::texture(&shot.gpu.device, &shot.gpu.queue, &shot.canvas.colour, 0)?;
             Ok(Taken { picture, frame_ms, scatter_ms, evaluations })
         })
     }
 
     fn rival(&mut self, rival: translume_rivals::Rival) -> Result<Taken, Error> {
-        self.make(LEAST_ATLAS)?;
         self.with_body(LEAST_ATLAS, |shot, body, _| {
             let Gpu { device, queue, .. } = shot.gpu;
             let mesh = &shot.stage.model.mesh;
@@ -175,10 +153,7 @@ impl<'a> Shot<'a> {
         })
     }
 
-    fn make(&mut self, atlas: u32) -> Result<(), Error> {
-        if self.bodies.contains_key(&atlas) {
-            return Ok(());
-        }
+    fn make(&self, atlas: u32) -> Result<(Body, CompositeView), Error> {
         let layout = self.stage.atlas(atlas)?;
         let descriptor = BodyDescriptor {
             medium: self.stage.medium,
@@ -189,19 +164,19 @@ impl<'a> Shot<'a> {
         let shadows = ShadowOptions { resolution: SHADOW_PER_ATLAS * atlas, ..descriptor.shadows };
         let descriptor = BodyDescriptor { shadows, ..descriptor };
         let body = self.translume.create_body(&self.gpu.device, &descriptor)?;
-        let view = self.composite.view(&self.gpu.device, &body);
-        self.bodies.insert(atlas, (body, view));
-        Ok(())
+        let view = self.canvas.composite.view(&self.gpu.device, &body);
+        Ok((body, view))
     }
 
-    /// A body leaves its shelf and comes back.
+    /// A body is made or leaves its shelf, and comes back.
     fn with_body<T>(
         &mut self,
         atlas: u32,
         work: impl FnOnce(&mut Self, &mut Body, &mut CompositeView) -> Result<T, Error>,
     ) -> Result<T, Error> {
-        let Some((mut body, mut view)) = self.bodies.remove(&atlas) else {
-            return Err(Error::Option { option: "--atlas", problem: format!("no body of {atlas} texels") });
+        let (mut body, mut view) = match self.bodies.remove(&atlas) {
+            Some(kept) => kept,
+            None => self.make(atlas)?,
         };
         let done = work(self, &mut body, &mut view);
         self.bodies.insert(atlas, (body, view));
@@ -246,31 +221,7 @@ impl<'a> Shot<'a> {
         view.prepare(device, queue, body, &self.stage.look, Gloss::None);
         let mut encoder = self.encoder();
         body.encode(&mut encoder);
-        {
-            let colour = self.colour.create_view(&wgpu::TextureViewDescriptor::default());
-            let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-                label: Some("shot"),
-                color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                    view: &colour,
-                    depth_slice: None,
-                    resolve_target: None,
-                    ops: wgpu::Operations {
-                        load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
-                        store: wgpu::StoreOp::Store,
-                    },
-                })],
-                depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
-                    view: &self.depth,
-                    depth_ops: Some(wgpu::Operations {
-                        load: wgpu::LoadOp::Clear(1.0),
-                        store: wgpu::StoreOp::Discard,
-                    }),
-                    stencil_ops: None,
-                }),
-                ..Default::default()
-            });
-            self.composite.draw(&mut pass, view);
-        }
+        self.canvas.draw(&mut encoder, view);
         self.gpu.time(encoder.finish())
     }
 

@@ -1,0 +1,67 @@
+//! What pictures are drawn into: a texture of radiance and coverage, and depth.
+
+use translume::{Composite, CompositeTarget, CompositeView, Translume, wgpu};
+
+/// Off screen, linear, full float.
+pub struct Canvas {
+    pub composite: Composite,
+    pub colour: wgpu::Texture,
+    depth: wgpu::TextureView,
+}
+
+impl Canvas {
+    const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
+    const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
+
+    pub fn new(device: &wgpu::Device, translume: &Translume, [width, height]: [u32; 2]) -> Self {
+        let target = CompositeTarget {
+            format: Self::FORMAT,
+            depth: Some((Self::DEPTH, wgpu::CompareFunction::Less)),
+            samples: 1,
+        };
+        let attachment = |format| {
+            device.create_texture(&wgpu::TextureDescriptor {
+                label: Some("picture"),
+                size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+                mip_level_count: 1,
+                sample_count: 1,
+                dimension: wgpu::TextureDimension::D2,
+                format,
+                usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
+                view_formats: &[],
+            })
+        };
+        Self {
+            composite: translume.composite(device, target),
+            colour: attachment(Self::FORMAT),
+            depth: attachment(Self::DEPTH).create_view(&wgpu::TextureViewDescriptor::default()),
+        }
+    }
+
+    /// Draws a body over nothing.
+    pub fn draw(&self, encoder: &mut wgpu::CommandEncoder, view: &CompositeView) {
+        let colour = self.colour.create_view(&wgpu::TextureViewDescriptor::default());
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("composite"),
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view: &colour,
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations {
+                    load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
+                    store: wgpu::StoreOp::Store,
+                },
+            })],
+            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+                view: &self.depth,
+                depth_ops: Some(wgpu::Operations {
+                    load: wgpu::LoadOp::Clear(1.0),
+                    store: wgpu::StoreOp::Discard,
+                }),
+                stencil_ops: None,
+            }),
+            ..Default::default()
+        });
+        self.composite.draw(&mut pass, view);
+    }
+}
