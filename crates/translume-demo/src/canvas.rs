@@ -10,8 +10,8 @@ pub struct Canvas {
 }
 
 impl Canvas {
-    const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
-    const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
+    pub const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
+    pub const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 
     pub fn new(device: &wgpu::Device, translume: &Translume, [width, height]: [u32; 2]) -> Self {
         let target = CompositeTarget {
@@ -19,27 +19,26 @@ impl Canvas {
             depth: Some((Self::DEPTH, wgpu::CompareFunction::Less)),
             samples: 1,
         };
-        let attachment = |format| {
-            device.create_texture(&wgpu::TextureDescriptor {
-                label: Some("picture"),
-                size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
-                mip_level_count: 1,
-                sample_count: 1,
-                dimension: wgpu::TextureDimension::D2,
-                format,
-                usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
-                view_formats: &[],
-            })
-        };
-        Self {
-            composite: translume.composite(device, target),
-            colour: attachment(Self::FORMAT),
-            depth: attachment(Self::DEPTH).create_view(&wgpu::TextureViewDescriptor::default()),
+        let [colour, depth] = attachments(device, [width, height]);
+        let composite = translume.composite(device, target);
+        Self { composite, colour, depth: depth.create_view(&wgpu::TextureViewDescriptor::default()) }
+    }
+
+    /// Forgets what was drawn if the size changes.
+    pub fn resize(&mut self, device: &wgpu::Device, size: [u32; 2]) {
+        if [self.colour.width(), self.colour.height()] != size {
+            let [colour, depth] = attachments(device, size);
+            (self.colour, self.depth) = (colour, depth.create_view(&wgpu::TextureViewDescriptor::default()));
         }
     }
 
     /// Draws a body over nothing.
     pub fn draw(&self, encoder: &mut wgpu::CommandEncoder, view: &CompositeView) {
+        self.pass(encoder, |pass| self.composite.draw(pass, view));
+    }
+
+    /// Draws over nothing.
+    pub fn pass(&self, encoder: &mut wgpu::CommandEncoder, draw: impl FnOnce(&mut wgpu::RenderPass<'_>)) {
         let colour = self.colour.create_view(&wgpu::TextureViewDescriptor::default());
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("composite"),
@@ -62,6 +61,24 @@ impl Canvas {
             }),
             ..Default::default()
         });
-        self.composite.draw(&mut pass, view);
+        draw(&mut pass);
     }
+}
+
+/// Colour and depth.
+fn attachments(device: &wgpu::Device, [width, height]: [u32; 2]) -> [wgpu::Texture; 2] {
+    [Canvas::FORMAT, Canvas::DEPTH].map(|format| {
+        device.create_texture(&wgpu::TextureDescriptor {
+            label: Some("picture"),
+            size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format,
+            usage: wgpu::TextureUsages::RENDER_ATTACHMENT
+                | wgpu::TextureUsages::COPY_SRC
+                | wgpu::TextureUsages::TEXTURE_BINDING,
+            view_formats: &[],
+        })
+    })
 }

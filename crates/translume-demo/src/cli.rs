@@ -1,10 +1,12 @@
 //! What can be said on the command line.
 
+use crate::scene::Quality;
 use clap::{Args, Parser, Subcommand};
 use std::path::PathBuf;
 
 const EXAMPLES: &str = "\
 Examples:
+  translume                                                            a window
   translume render creature --medium jade -o creature.png
   translume render bunny.obj --medium skimmilk --size 1024 -o bunny.png
   translume render creature --medium wax --frames 48 -o morph.png      an animated PNG
@@ -29,11 +31,11 @@ RUST_LOG=info shows what wgpu has to say; WGPU_ADAPTER_NAME picks an adapter.";
 
 /// Translucent objects that deform, rendered in real time.
 #[derive(Debug, Parser)]
-#[command(name = "translume", version, after_help = EXAMPLES, arg_required_else_help = true)]
+#[command(name = "translume", version, after_help = EXAMPLES)]
 pub struct Arguments {
-    /// What to do.
+    /// What to do; by default a window opens.
     #[command(subcommand)]
-    pub command: Command,
+    pub command: Option<Command>,
 }
 
 /// A command.
@@ -80,34 +82,34 @@ pub struct Render {
     /// Even out charts until every texel holds about the same area of the surface.
     #[arg(long)]
     pub even: bool,
-    /// Diffuse profile: half-space (random walks, tabulated), half-space-searchlight (where all light enters along the normal), dipole (the paper's formula to the letter), dipole-normalised, dipole-oriented (its sources below and above the surface), better-dipole, photon-beam, normalised-diffusion,
+    /// Diffuse profile: half-space (random walks, tabulated; the default), half-space-searchlight (where all light enters along the normal), dipole (the paper's formula to the letter), dipole-normalised, dipole-oriented (its sources below and above the surface), better-dipole, photon-beam, normalised-diffusion,
     /// normalised-diffusion-searchlight; a dipole, the better one or photon-beam with -single adds light scattered once; or
     /// a table that `translume profile` wrote, by the name of its .json.
-    #[arg(long, value_name = "NAME", default_value = "half-space")]
-    pub profile: String,
-    /// How the scatter sum is evaluated: dual (groups of texels at both ends), tree (each texel by itself), all-pairs (exact and slow), or
+    #[arg(long, value_name = "NAME")]
+    pub profile: Option<String>,
+    /// How the scatter sum is evaluated: dual (groups of texels at both ends; the default), tree (each texel by itself), all-pairs (exact and slow), or
     /// pattern (57 samples around a texel of the atlas, tens of percent off: for comparison).
-    #[arg(long, value_name = "NAME", default_value = "dual")]
-    pub method: String,
+    #[arg(long, value_name = "NAME")]
+    pub method: Option<String>,
     /// Error that dual keeps within, root mean square over the mean: 0.0001 to 0.1, by default 0.01.
     #[arg(long, value_name = "X", conflicts_with = "theta")]
     pub tolerance: Option<f32>,
-    /// Where exitance is evaluated: texel, vertex, fragment (with dual), or auto for whichever is cheapest and loses nothing.
-    #[arg(long, value_name = "PLACE", default_value = "texel")]
-    pub evaluate: String,
+    /// Where exitance is evaluated: texel (the default), vertex, fragment (with dual), or auto for whichever is cheapest and loses nothing.
+    #[arg(long, value_name = "PLACE")]
+    pub evaluate: Option<String>,
     /// For experts: opening angle of dual in place of a tolerance (0.01 is 0.65), or of tree (by default 0.4).
     #[arg(long, value_name = "X")]
     pub theta: Option<f32>,
-    /// Width of a shadow map in texels.
-    #[arg(long, value_name = "N", default_value_t = 2048)]
-    pub shadow: u32,
-    /// Directions in which the body's own shadow on sky light is known, a multiple of 8 up to 256.
-    #[arg(long, value_name = "N", default_value_t = 256)]
-    pub directions: u32,
+    /// Width of a shadow map in texels, by default 2048.
+    #[arg(long, value_name = "N")]
+    pub shadow: Option<u32>,
+    /// Directions in which the body's own shadow on sky light is known, a multiple of 8 up to 256, which is the default.
+    #[arg(long, value_name = "N")]
+    pub directions: Option<u32>,
     /// Samples per pixel along each axis. By default 2 for a PNG, and 1, the pixel's centre, for an EXR.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=8))]
     pub samples: Option<u32>,
-    /// Roughness of the surface's own reflection, 0.03 (polished) to 1 (matt); 0 for none. By default 0.35 for a model and 0 for a scene.
+    /// Roughness of the surface's own reflection, 0.03 (polished) to 1 (matt); 0 for none. By default 0.35 for a model, and for a scene what it says or 0.
     #[arg(long, value_name = "X")]
     pub gloss: Option<f32>,
     /// Where the camera stands: degrees to the right of the front and upwards.
@@ -128,9 +130,9 @@ pub struct Render {
         default_value_t = 0.0
     )]
     pub env_rotation: f32,
-    /// Brightness of a PNG, in stops.
-    #[arg(long, value_name = "EV", default_value_t = 0.0, allow_negative_numbers = true)]
-    pub exposure: f32,
+    /// Brightness of a PNG, in stops; by default 0, or what the scene says.
+    #[arg(long, value_name = "EV", allow_negative_numbers = true)]
+    pub exposure: Option<f32>,
     /// Melt a closed model into an egg or a sphere: it takes the place of the model's own morph targets and skin.
     #[arg(long, value_name = "SHAPE", conflicts_with = "scene", value_parser = ["egg", "sphere"])]
     pub into: Option<String>,
@@ -293,10 +295,32 @@ pub struct Report {
 /// How the surface is laid out in the atlas.
 #[derive(Debug, Args)]
 pub struct Layout {
-    /// Width of the atlas in texels.
-    #[arg(long, value_name = "N", default_value_t = 512)]
-    pub atlas: u32,
-    /// Where charts come from: unwrap, own (the file's texture coordinates), or auto (own where they are fit for light).
-    #[arg(long, value_name = "SOURCE", default_value = "unwrap")]
-    pub charts: String,
+    /// Width of the atlas in texels, by default 512.
+    #[arg(long, value_name = "N")]
+    pub atlas: Option<u32>,
+    /// Where charts come from: unwrap (if nothing is said), own (the file's texture coordinates), or auto (own where they are fit for light).
+    #[arg(long, value_name = "SOURCE")]
+    pub charts: Option<String>,
+}
+
+impl Layout {
+    /// With defaults for what is not said.
+    pub fn quality(&self, even: bool) -> Quality {
+        let mut quality = Quality { even, ..Quality::default() };
+        self.put(&mut quality);
+        quality
+    }
+
+    /// What is said.
+    pub fn put(&self, quality: &mut Quality) {
+        put(&mut quality.atlas, self.atlas);
+        put(&mut quality.charts, self.charts.clone());
+    }
+}
+
+/// What the command line says has the last word.
+pub fn put<T>(into: &mut T, said: Option<T>) {
+    if let Some(said) = said {
+        *into = said;
+    }
 }

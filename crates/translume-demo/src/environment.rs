@@ -3,7 +3,7 @@
 use crate::error::Error;
 use glam::{Mat3, Vec3};
 use image::ImageDecoder as _;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 use std::fs::File;
 use std::io::{BufRead as _, BufReader};
 use std::path::{Path, PathBuf};
@@ -14,7 +14,7 @@ use translume::{EnvironmentLight, EnvironmentMap, Light};
 const MAX_PIXELS: usize = 1 << 27;
 
 /// An environment as a scene describes it.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Environment {
     /// OpenEXR or Radiance; see [`EnvironmentMap`] for where its pixels are.

@@ -34,6 +34,8 @@ pub enum Error {
     Output { path: PathBuf, problem: String },
     #[error("{option}: {problem}")]
     Option { option: &'static str, problem: String },
+    #[error("no window can be opened: {0}; `translume --help` tells what works without one")]
+    Window(String),
     #[error(
         "no graphics adapter found ({0}); on Debian or Ubuntu `apt-get install libvulkan1 mesa-vulkan-drivers` brings a software one"
     )]

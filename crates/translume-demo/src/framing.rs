@@ -1,8 +1,8 @@
 //! Framing: where camera and lamps stand around what is to be seen.
 
-use crate::scene::SceneCamera;
+use crate::scene::{SceneCamera, SceneLight};
 use glam::{Mat4, Vec3};
-use translume::{AmbientLight, Camera, DirectionalLight, Light, LookAt, PointLight};
+use translume::{Camera, LookAt};
 
 /// Everything that will be seen, at any moment.
 pub struct Subject {
@@ -49,20 +49,22 @@ impl Subject {
     }
 
     /// Seen from the camera: a lamp behind that shines through what is thin, a key from the upper right, and a little sky.
-    pub fn lamps(&self, view: [f32; 2]) -> Vec<Light> {
+    pub fn lamps(&self, view: [f32; 2]) -> Vec<SceneLight> {
         let lamp = turned([view[0], 0.0], Vec3::new(-0.75, 1.1, -1.5)) * self.radius * 1.5;
         vec![
-            Light::Point(PointLight {
+            SceneLight::Point {
                 position: (self.middle + lamp).to_array(),
                 intensity: [7.5, 6.9, 6.0].map(|c| c * lamp.length_squared()),
-                ..Default::default()
-            }),
-            Light::Directional(DirectionalLight {
+                shadow: true,
+                lit_region: None,
+            },
+            SceneLight::Directional {
                 to_light: turned([view[0], 0.0], Vec3::new(0.9, 0.9, 0.75)).to_array(),
                 irradiance: [1.5, 1.6, 1.75],
-                ..Default::default()
-            }),
-            Light::Ambient(AmbientLight { radiance: [0.08, 0.09, 0.11], ..Default::default() }),
+                shadow: true,
+                lit_region: None,
+            },
+            SceneLight::ConstantEnv { radiance: [0.08, 0.09, 0.11], shadow: false },
         ]
     }
 

@@ -5,10 +5,13 @@ use std::time::Instant;
 use translume::wgpu;
 
 /// A device and the name of the adapter behind it.
+#[derive(Clone)]
 pub struct Gpu {
     pub device: wgpu::Device,
     pub queue: wgpu::Queue,
     pub adapter: String,
+    /// Whether the CPU does the work.
+    pub is_software: bool,
 }
 
 impl Gpu {
@@ -35,7 +38,8 @@ impl Gpu {
         };
         let (device, queue) = pollster::block_on(adapter.request_device(&descriptor))
             .map_err(|error| Error::NoDevice { adapter: name.clone(), reason: error.to_string() })?;
-        Ok(Self { device, queue, adapter: name })
+        let is_software = info.device_type == wgpu::DeviceType::Cpu;
+        Ok(Self { device, queue, adapter: name, is_software })
     }
 
     /// Runs commands; from submission to their end, ms.

@@ -42,11 +42,11 @@ impl Inspected {
     fn new(name: &str, arguments: &Inspect) -> Result<Self, Error> {
         let model = model::open(name)?;
         let build = |equiareal| {
-            let options = model::atlas_options(&arguments.layout, equiareal)?;
+            let options = arguments.layout.quality(equiareal).atlas()?;
             Ok::<_, Error>(model::unwrap(&model.mesh, &options)?.report)
         };
         let (flattened, even) = (build(false)?, build(true)?);
-        Ok(Self { model, size: arguments.layout.atlas, flattened, even })
+        Ok(Self { model, size: arguments.layout.quality(true).atlas, flattened, even })
     }
 
     fn animations(&self) -> Vec<&str> {

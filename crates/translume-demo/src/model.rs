@@ -1,6 +1,5 @@
 //! From a name on the command line to a clean mesh and its atlas.
 
-use crate::cli::Layout;
 use crate::error::Error;
 use crate::progress;
 use glam::{Mat4, Vec3};
@@ -9,7 +8,10 @@ use std::path::Path;
 use translume_mesh::repair::{RepairOptions, repair_with};
 use translume_mesh::rig::{self, Animation, Pose, Rig};
 use translume_mesh::spherical::{EggOptions, to_egg};
-use translume_mesh::{Atlas, AtlasOptions, ChartSource, Mesh, RepairReport, builtin, load};
+use translume_mesh::{Atlas, AtlasOptions, Mesh, Progress, RepairReport, builtin, load};
+
+/// Hears how far work has come, and ends it by `false`.
+pub type Watch<'a> = &'a (dyn Fn(Progress) -> bool + Sync);
 
 /// A mesh, what had to be done to it, and what moves it.
 pub struct Model {
@@ -54,12 +56,10 @@ impl Model {
     }
 
     /// The model with one morph target, an egg or, if asked, a sphere; its own targets, skin and animations are gone.
-    pub fn into_round(self, sphere: bool) -> Result<Self, Error> {
-        let bar = progress::bar("lay");
+    pub fn into_round(self, sphere: bool, watch: Watch<'_>) -> Result<Self, Error> {
         let mesh = Mesh { targets: Vec::new(), skin: None, ..self.mesh };
         let options = if sphere { EggOptions::SPHERE } else { EggOptions::default() };
-        let laid = to_egg(&mesh, &options, |step| progress::show(&bar, &step))?;
-        bar.finish_and_clear();
+        let laid = to_egg(&mesh, &options, watch)?;
         let figures = &laid.report;
         progress::tell(&format!(
             "{}: laid around {} in {:.2} s, {} holes filled, {} triangles flipped",
@@ -108,12 +108,12 @@ pub fn open(name: &str) -> Result<Model, Error> {
     {
         return clean(mesh);
     }
-    open_file(Path::new(name))
+    open_file(Path::new(name), &|_| true)
 }
 
 /// A mesh file.
-pub fn open_file(path: &Path) -> Result<Model, Error> {
-    let loaded = load::load(path)?;
+pub fn open_file(path: &Path, watch: Watch<'_>) -> Result<Model, Error> {
+    let loaded = load::load_with_progress(path, watch)?;
     Ok(Model::new(loaded.mesh, loaded.repairs, loaded.rig))
 }
 
@@ -123,24 +123,7 @@ pub fn clean(mesh: Mesh) -> Result<Model, Error> {
     Ok(Model::new(mesh, repairs, None))
 }
 
-/// What the command line says of the atlas.
-pub fn atlas_options(layout: &Layout, equiareal: bool) -> Result<AtlasOptions, Error> {
-    let charts = match layout.charts.as_str() {
-        "unwrap" => ChartSource::Unwrap,
-        "own" => ChartSource::Own,
-        "auto" => ChartSource::OwnOrUnwrap,
-        other => {
-            let problem = format!("no source of charts is called \"{other}\"; known are unwrap, own, auto");
-            return Err(Error::Option { option: "--charts", problem });
-        }
-    };
-    Ok(AtlasOptions { size: layout.atlas, charts, equiareal, ..Default::default() })
-}
-
 /// Builds an atlas behind a progress bar.
 pub fn unwrap(mesh: &Mesh, options: &AtlasOptions) -> Result<Atlas, Error> {
-    let bar = progress::bar("unwrap");
-    let atlas = Atlas::build(mesh, options, |step| progress::show(&bar, &step));
-    bar.finish_and_clear();
-    Ok(atlas?)
+    Ok(progress::during("unwrap", |watch| Atlas::build(mesh, options, watch))?)
 }

@@ -34,7 +34,7 @@ pub enum Format {
 }
 
 /// Linear grey behind the body in a PNG, in the middle and at the rim.
-const BACKDROP: [f32; 2] = [0.075, 0.045];
+pub const BACKDROP: [f32; 2] = [0.075, 0.045];
 
 impl Develop {
     /// `place`: from the middle of the picture, ±1 at its edges.
@@ -153,6 +153,22 @@ impl Output {
             return fail("is a directory; name a file");
         }
         Ok(Self { path: path.to_owned(), directory, format, frame_seconds: 1.0 / 24.0 })
+    }
+
+    /// Samples along each side of a pixel that suit this kind of file: an EXR is compared, pixel centre by pixel centre.
+    pub fn samples(&self) -> u32 {
+        match self.format {
+            Format::Png => 2,
+            Format::Exr => 1,
+        }
+    }
+
+    /// What becomes of samples for this kind of file.
+    pub fn develop(&self, exposure: f32) -> Develop {
+        match self.format {
+            Format::Png => Develop::Display { exposure },
+            Format::Exr => Develop::Radiance,
+        }
     }
 
     /// Writes one picture, or an animation of several.

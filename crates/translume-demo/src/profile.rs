@@ -26,14 +26,14 @@ struct TableFile {
     reflectance_per_mm2: Vec<[f32; 3]>,
 }
 
-/// The profile of this name, or the table in a file whose name ends in .json.
-pub fn open(name: &str) -> Result<Profile, Error> {
-    let path = Path::new(name);
-    if path.extension().is_none_or(|extension| extension != "json") {
+/// The profile of this name, or the table in a file of `directory` whose name ends in .json.
+pub fn open(name: &str, directory: &Path) -> Result<Profile, Error> {
+    if Path::new(name).extension().is_none_or(|extension| extension != "json") {
         return Ok(Profile::named(name)?);
     }
-    let fail = |problem: String| Error::Table { path: path.to_owned(), problem };
-    let text = std::fs::read_to_string(path).map_err(|error| fail(format!("cannot be read: {error}")))?;
+    let path = directory.join(name);
+    let fail = |problem: String| Error::Table { path: path.clone(), problem };
+    let text = std::fs::read_to_string(&path).map_err(|error| fail(format!("cannot be read: {error}")))?;
     let file: TableFile = serde_json::from_str(&text)
         .map_err(|error| fail(format!("is not a table: {error}; `translume profile` writes one")))?;
     let profile =

@@ -1,5 +1,6 @@
 //! Progress for people who wait.
 
+use crate::model::Watch;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::time::Duration;
 
@@ -27,12 +28,17 @@ pub fn bar(name: &str) -> ProgressBar {
     bar
 }
 
-/// Shows the unwrapper's progress.
-pub fn show(bar: &ProgressBar, progress: &translume_mesh::Progress) -> bool {
-    bar.set_message(progress.stage);
-    if let Some(total) = progress.total {
-        bar.set_length(total as u64);
-        bar.set_position(progress.done as u64);
-    }
-    true
+/// Work behind a bar.
+pub fn during<T>(name: &str, work: impl FnOnce(Watch<'_>) -> T) -> T {
+    let bar = bar(name);
+    let result = work(&|progress| {
+        bar.set_message(progress.stage);
+        if let Some(total) = progress.total {
+            bar.set_length(total as u64);
+            bar.set_position(progress.done as u64);
+        }
+        true
+    });
+    bar.finish_and_clear();
+    result
 }

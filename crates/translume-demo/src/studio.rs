@@ -5,7 +5,7 @@ use crate::error::Error;
 use crate::gpu::Gpu;
 use crate::picture::{Develop, Picture};
 use translume::{
-    Body, BodyDescriptor, Camera, CompositeView, Frame, FrameTimings, Gloss, Translume, readback, wgpu,
+    Body, BodyDescriptor, Camera, CompositeView, Frame, Gloss, Translume, readback, wgpu,
 };
 
 /// A body in front of a camera, off screen.
@@ -20,35 +20,29 @@ pub struct Studio {
 impl Studio {
     /// Uploads the body; pictures will be `width` × `height` pixels of `samples`² samples each.
     pub fn new(
-        gpu: Gpu,
+        gpu: &Gpu,
+        translume: &Translume,
         descriptor: &BodyDescriptor<'_>,
-        width: u32,
-        height: u32,
+        [width, height]: [u32; 2],
         samples: u32,
     ) -> Result<Self, Error> {
-        let limit = gpu.device.limits().max_texture_dimension_2d;
-        if width.max(height) * samples > limit {
-            let problem = format!(
-                "{width} × {height} pixels with {samples} × {samples} samples exceed this adapter's {limit} texels; \
-                 choose fewer pixels or samples"
-            );
-            return Err(Error::Option { option: "--size", problem });
-        }
-        let translume = Translume::new(&gpu.device)?;
+        check_size(gpu, [width, height], samples)?;
         let body = translume.create_body(&gpu.device, descriptor)?;
-        let canvas = Canvas::new(&gpu.device, &translume, [width * samples, height * samples]);
+        let canvas = Canvas::new(&gpu.device, translume, [width * samples, height * samples]);
         let view = canvas.composite.view(&gpu.device, &body);
-        Ok(Self { gpu, body, canvas, view, samples })
+        Ok(Self { gpu: gpu.clone(), body, canvas, view, samples })
     }
 
-    /// Computes one frame and takes its picture.
-    pub fn take(
-        &mut self,
-        frame: &Frame<'_>,
-        camera: &Camera,
-        gloss: Gloss,
-        develop: Develop,
-    ) -> Result<Picture, Error> {
+    /// Later pictures have so many pixels and samples.
+    pub fn resize(&mut self, [width, height]: [u32; 2], samples: u32) -> Result<(), Error> {
+        check_size(&self.gpu, [width, height], samples)?;
+        self.samples = samples;
+        self.canvas.resize(&self.gpu.device, [width * samples, height * samples]);
+        Ok(())
+    }
+
+    /// Computes one frame and draws it.
+    pub fn draw(&mut self, frame: &Frame<'_>, camera: &Camera, gloss: Gloss) -> Result<(), Error> {
         let Gpu { device, queue, .. } = &self.gpu;
         self.body.prepare(device, queue, frame)?;
         self.view.prepare(device, queue, &self.body, camera, gloss);
@@ -57,27 +51,47 @@ impl Studio {
         self.body.encode(&mut encoder);
         self.canvas.draw(&mut encoder, &self.view);
         queue.submit([encoder.finish()]);
+        Ok(())
+    }
+
+    /// What was drawn, as a picture.
+    pub fn picture(&self, develop: Develop) -> Result<Picture, Error> {
+        let Gpu { device, queue, .. } = &self.gpu;
         let samples = readback::texture::<[f32; 4]>(device, queue, &self.canvas.colour, 0)?;
         Ok(Picture::from_samples(&samples, self.canvas.colour.width(), self.samples, develop))
     }
 
-    /// Width and height of what is drawn.
+    /// What was drawn: radiance and coverage, `samples`² of them a pixel.
+    pub fn drawn(&self) -> (&wgpu::Texture, u32) {
+        (&self.canvas.colour, self.samples)
+    }
+
+    /// Width and height of what is drawn, in samples.
     pub fn pixels(&self) -> [u32; 2] {
         [self.canvas.colour.width(), self.canvas.colour.height()]
     }
 
-    /// Whether further frames are timed.
-    pub fn set_timings(&mut self, on: bool) {
-        self.body.set_timings(on);
+    pub fn canvas(&self) -> &Canvas {
+        &self.canvas
     }
 
-    /// How long the last frame took that had anything to do.
-    pub fn timings(&self) -> Option<FrameTimings> {
-        self.body.timings()
+    pub fn body(&self) -> &Body {
+        &self.body
     }
 
-    /// The adapter's name, for messages.
-    pub fn adapter(&self) -> &str {
-        &self.gpu.adapter
+    pub fn body_mut(&mut self) -> &mut Body {
+        &mut self.body
     }
+}
+
+fn check_size(gpu: &Gpu, [width, height]: [u32; 2], samples: u32) -> Result<(), Error> {
+    let limit = gpu.device.limits().max_texture_dimension_2d;
+    if width.max(height) * samples <= limit {
+        return Ok(());
+    }
+    let problem = format!(
+        "{width} × {height} pixels with {samples} × {samples} samples exceed this adapter's {limit} texels; \
+         choose fewer pixels or samples"
+    );
+    Err(Error::Option { option: "--size", problem })
 }

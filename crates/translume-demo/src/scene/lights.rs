@@ -2,7 +2,8 @@
 
 use crate::environment::Environment;
 use crate::error::Error;
-use serde::Deserialize;
+use super::is_default;
+use serde::{Deserialize, Serialize};
 use std::path::Path;
 use translume::{
     AmbientLight, DirectionalLight, Light, PointLight, RectangleLight, Region, SphereLight, SpotLight,
@@ -12,7 +13,7 @@ fn lit() -> bool {
     true
 }
 
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "type", rename_all = "snake_case", deny_unknown_fields)]
 pub enum SceneLight {
     Directional {
@@ -20,6 +21,7 @@ pub enum SceneLight {
         irradiance: [f32; 3],
         #[serde(default = "lit")]
         shadow: bool,
+        #[serde(skip_serializing_if = "Option::is_none")]
         lit_region: Option<LitRegion>,
     },
     Point {
@@ -27,6 +29,7 @@ pub enum SceneLight {
         intensity: [f32; 3],
         #[serde(default = "lit")]
         shadow: bool,
+        #[serde(skip_serializing_if = "Option::is_none")]
         lit_region: Option<LitRegion>,
     },
     Spot {
@@ -39,6 +42,7 @@ pub enum SceneLight {
         outer_angle_deg: f32,
         #[serde(default = "lit")]
         shadow: bool,
+        #[serde(skip_serializing_if = "Option::is_none")]
         lit_region: Option<LitRegion>,
     },
     ConstantEnv {
@@ -77,17 +81,16 @@ fn spot_outer_angle_deg() -> f32 {
 }
 
 /// Light enters only through the face y = 0, and only where the coordinate is at least `min`.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LitRegion {
     pub axis: Axis,
     pub min: f32,
-    #[serde(default)]
-    #[allow(dead_code, reason = "read by people")]
+    #[serde(default, skip_serializing_if = "is_default")]
     pub note: String,
 }
 
-#[derive(Clone, Copy, Debug, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Axis {
     X,
@@ -106,6 +109,53 @@ impl LitRegion {
 }
 
 impl SceneLight {
+    /// What people call it.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Directional { .. } => "sun",
+            Self::Point { .. } => "point",
+            Self::Spot { .. } => "spot",
+            Self::ConstantEnv { .. } => "sky",
+            Self::CapEnv { .. } => "cone of the sky",
+            Self::Environment(_) => "sky from a file",
+            Self::Rectangle { .. } => "rectangle",
+            Self::Sphere { .. } => "sphere",
+        }
+    }
+
+    /// Irradiance, intensity or radiance; a map has its own.
+    pub fn brightness_mut(&mut self) -> Option<&mut [f32; 3]> {
+        match self {
+            Self::Directional { irradiance: rgb, .. }
+            | Self::Point { intensity: rgb, .. }
+            | Self::Spot { intensity: rgb, .. }
+            | Self::ConstantEnv { radiance: rgb, .. }
+            | Self::CapEnv { radiance: rgb, .. }
+            | Self::Rectangle { radiance: rgb, .. }
+            | Self::Sphere { radiance: rgb, .. } => Some(rgb),
+            Self::Environment(_) => None,
+        }
+    }
+
+    /// The same to look at; 1 for a map.
+    pub fn brightness(&self) -> [f32; 3] {
+        self.clone().brightness_mut().map_or([1.0; 3], |rgb| *rgb)
+    }
+
+    /// Whether the body shadows it.
+    pub fn shadow_mut(&mut self) -> &mut bool {
+        match self {
+            Self::Directional { shadow, .. }
+            | Self::Point { shadow, .. }
+            | Self::Spot { shadow, .. }
+            | Self::ConstantEnv { shadow, .. }
+            | Self::CapEnv { shadow, .. }
+            | Self::Rectangle { shadow, .. }
+            | Self::Sphere { shadow, .. } => shadow,
+            Self::Environment(environment) => &mut environment.shadow,
+        }
+    }
+
     /// Takes the file it names, if it names one, from this directory.
     pub fn find(&mut self, directory: &Path) {
         if let Self::Environment(environment) = self {

@@ -1,48 +1,86 @@
 //! The scene format: JSON, lengths in the unit it states, linear colours. Unknown fields and types are errors that name them.
 
 mod lights;
+mod quality;
 
 pub use lights::SceneLight;
+pub use quality::{Look, Quality, THETA, TOLERANCE};
 
 use crate::error::Error;
 use crate::model;
 use crate::motion::Wish;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 use translume::Medium;
 use translume_mesh::builtin;
 
 /// A scene file.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Scene {
-    #[serde(default)]
-    #[allow(dead_code, reason = "read by people")]
+    #[serde(default, skip_serializing_if = "is_default")]
     pub name: String,
-    #[serde(default)]
-    #[allow(dead_code, reason = "read by people")]
+    #[serde(default, skip_serializing_if = "is_default")]
     pub purpose: String,
     /// "mm" (default), "cm" or "m".
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "is_default")]
     pub length_unit: LengthUnit,
+    /// How long the unit is in millimetres, where it is none of those.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub mm_per_unit: Option<f32>,
     pub shape: Shape,
+    /// Which axis of the mesh points up.
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub up: Up,
+    /// What the mesh melts into: it takes the place of its own morph targets and skin.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub into: Option<Round>,
     /// Coefficients in 1/mm.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub material: Option<Material>,
     /// A preset by name instead of `material`.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub medium: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub lights: Option<Vec<SceneLight>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub camera: Option<SceneCamera>,
     /// Weight of each morph target.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "is_default")]
     pub morph: Vec<f32>,
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "is_default")]
     pub warp: SceneWarp,
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub animation: Option<SceneAnimation>,
     /// Seconds into the animation, the first one if none is named.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub time: Option<f32>,
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub look: Look,
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub quality: Quality,
 }
 
-#[derive(Clone, Copy, Debug, Default, Deserialize)]
+pub(crate) fn is_default<T: Default + PartialEq>(value: &T) -> bool {
+    *value == T::default()
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Up {
+    #[default]
+    Y,
+    Z,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Round {
+    Egg,
+    Sphere,
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct SceneWarp {
     /// By how much the top turns against the bottom.
@@ -54,14 +92,14 @@ pub struct SceneWarp {
 }
 
 /// An animation by name or by number from 0.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum SceneAnimation {
     Index(usize),
     Name(String),
 }
 
-#[derive(Clone, Copy, Debug, Default, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum LengthUnit {
     #[default]
     #[serde(rename = "mm")]
@@ -82,14 +120,15 @@ impl LengthUnit {
     }
 }
 
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "type", rename_all = "snake_case", deny_unknown_fields)]
 pub enum Shape {
     Mesh {
         file: PathBuf,
-        #[serde(default)]
+        #[serde(default, skip_serializing_if = "is_default")]
         normals: Normals,
         /// Close holes of up to this many edges.
+        #[serde(skip_serializing_if = "Option::is_none")]
         fill_holes: Option<usize>,
     },
     Sphere {
@@ -102,13 +141,14 @@ pub enum Shape {
     },
     Builtin {
         name: String,
-        #[serde(default)]
+        #[serde(default, skip_serializing_if = "is_default")]
         normals: Normals,
+        #[serde(skip_serializing_if = "Option::is_none")]
         fill_holes: Option<usize>,
     },
 }
 
-#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Normals {
     #[default]
@@ -116,7 +156,7 @@ pub enum Normals {
     Flat,
 }
 
-#[derive(Clone, Copy, Debug, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Material {
     pub sigma_s_prime: [f32; 3],
@@ -132,7 +172,7 @@ fn one() -> f32 {
     1.0
 }
 
-#[derive(Clone, Copy, Debug, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SceneCamera {
     pub eye: [f32; 3],
@@ -171,6 +211,9 @@ impl Scene {
         if let Some(camera) = &scene.camera {
             camera.validate().map_err(|problem| fail(format!("camera: {problem}")))?;
         }
+        if let Some(mm) = scene.mm_per_unit.filter(|mm| !(*mm > 0.0 && mm.is_finite())) {
+            return Err(fail(format!("mm_per_unit is {mm}, but must be finite and positive")));
+        }
         let directory = path.parent().unwrap_or(Path::new(""));
         scene.lights.iter_mut().flatten().for_each(|light| light.find(directory));
         Ok(scene)
@@ -187,7 +230,10 @@ impl Scene {
             name: name.to_owned(),
             purpose: String::new(),
             length_unit: LengthUnit::Millimetre,
+            mm_per_unit: None,
             shape,
+            up: Up::Y,
+            into: None,
             material: None,
             medium: Some("jade".to_owned()),
             lights: None,
@@ -196,7 +242,14 @@ impl Scene {
             warp: SceneWarp::default(),
             animation: None,
             time: None,
+            look: Look::default(),
+            quality: Quality::default(),
         }
+    }
+
+    /// Millimetres per unit of the scene.
+    pub fn mm_per_unit(&self) -> f32 {
+        self.mm_per_unit.unwrap_or(self.length_unit.mm())
     }
 
     /// The scene's medium, if it says one.
@@ -214,12 +267,23 @@ impl Scene {
         Wish { morph: self.morph.clone(), animation, time: self.time, twist_deg, bend_deg, inflate }
     }
 
-    /// The scene's mesh, its path taken relative to the scene file at `path`, and whether its triangles keep their own normals.
-    pub fn model(&self, path: &Path) -> Result<(model::Model, bool), Error> {
+    /// The scene's mesh, its path taken relative to the scene file at `path`, and whether its triangles keep their own normals. `progress` can cancel.
+    pub fn model(&self, path: &Path, progress: model::Watch<'_>) -> Result<(model::Model, bool), Error> {
+        let (mut model, is_flat) = self.mesh(path, progress)?;
+        if self.up == Up::Z {
+            model.turn_z_up();
+        }
+        if let Some(round) = self.into {
+            model = model.into_round(round == Round::Sphere, progress)?;
+        }
+        Ok((model, is_flat))
+    }
+
+    fn mesh(&self, path: &Path, progress: model::Watch<'_>) -> Result<(model::Model, bool), Error> {
         match &self.shape {
             Shape::Mesh { file, normals, fill_holes } => {
                 let file = self.shape.file(path).unwrap_or_else(|| file.clone());
-                Ok((model::open_file(&file)?.closed(*fill_holes)?, *normals == Normals::Flat))
+                Ok((model::open_file(&file, progress)?.closed(*fill_holes)?, *normals == Normals::Flat))
             }
             // 20,480 triangles: no point of the surface is further than 0.02 % of the radius from the sphere.
             Shape::Sphere { center, radius } => {

@@ -2,11 +2,11 @@
 
 mod subject;
 
-pub use subject::{Body, Subject, VIEW};
+pub use subject::{Body, Subject};
 
 use crate::cli;
 use crate::error::Error;
-use crate::picture::{Develop, Format, Output, Picture};
+use crate::picture::{Format, Output, Picture};
 use crate::progress;
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -159,15 +159,8 @@ impl Outputs {
     }
 
     fn write(&self, estimate: &Estimate) -> Result<(), Error> {
-        let covered = estimate.radiance.iter().zip(&estimate.coverage);
-        let samples: Vec<[f32; 4]> = covered
-            .map(|(rgb, coverage)| [rgb[0] as f32, rgb[1] as f32, rgb[2] as f32, *coverage as f32])
-            .collect();
-        let develop = match self.picture.format {
-            Format::Png => Develop::Display { exposure: self.exposure },
-            Format::Exr => Develop::Radiance,
-        };
-        let picture = Picture::from_samples(&samples, estimate.width as u32, 1, develop);
+        let develop = self.picture.develop(self.exposure);
+        let picture = Picture::from_samples(&samples(estimate), estimate.width as u32, 1, develop);
         self.picture.write(&[picture])?;
         for (output, values) in [(&self.error, &estimate.error), (&self.single, &estimate.single)] {
             if let Some(output) = output {
@@ -176,6 +169,12 @@ impl Outputs {
         }
         Ok(())
     }
+}
+
+/// Radiance and coverage of every pixel.
+pub fn samples(estimate: &Estimate) -> Vec<[f32; 4]> {
+    let covered = estimate.radiance.iter().zip(&estimate.coverage);
+    covered.map(|(rgb, coverage)| [rgb[0] as f32, rgb[1] as f32, rgb[2] as f32, *coverage as f32]).collect()
 }
 
 /// A file of numbers, which a tone mapper would spoil.

@@ -6,6 +6,7 @@ use crate::framing::Subject;
 use crate::model::{self, Model};
 use crate::motion::Motion;
 use crate::scene::{Scene, SceneCamera};
+use crate::setup::{Opened, VIEW};
 use crate::trace;
 use translume::{Camera, Light, Medium};
 use translume_mesh::rig::Pose;
@@ -42,30 +43,23 @@ impl Stage {
     }
 
     fn new(name: String, scene: &Scene, path: &std::path::Path) -> Result<Self, Error> {
-        let (model, flat_normals) = scene.model(path)?;
-        let just_below_y0 = -1e-4 * model.mesh.diagonal();
-        let mut lights = Vec::new();
-        for light in scene.lights.iter().flatten() {
-            lights.extend(light.lights(just_below_y0)?);
-        }
+        let opened = Opened::new(scene, path, &|_| true)?;
         let (pose, warp, subject) = {
-            let motion = Motion::new(&model, &scene.wish(), 1)?;
+            let motion = Motion::new(&opened.model, &scene.wish(), 1)?;
             (motion.moment(0).pose, motion.warp, Subject::new(motion.points()?))
         };
-        if scene.lights.is_none() {
-            lights = subject.lamps(trace::VIEW);
-        }
-        let camera = scene.camera.unwrap_or_else(|| subject.camera(SIZE, trace::VIEW));
+        let lights = opened.lights(scene, &subject, VIEW)?;
+        let camera = scene.camera.unwrap_or_else(|| subject.camera(SIZE, VIEW));
         Ok(Self {
             name,
             purpose: scene.purpose.clone(),
             medium: scene.medium()?.unwrap_or_default(),
-            mm_per_unit: scene.length_unit.mm(),
+            mm_per_unit: scene.mm_per_unit(),
             look: subject.look(&camera),
             bounds: subject.bounds(),
-            paths: trace::Subject::new(scene, &model, flat_normals, None)?,
-            model,
-            flat_normals,
+            paths: trace::Subject::new(scene, &opened, None)?,
+            model: opened.model,
+            flat_normals: opened.flat_normals,
             lights,
             pose,
             warp,

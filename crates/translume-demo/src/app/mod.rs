@@ -1,0 +1,404 @@
+//! The window: a model, its light and what it is made of, and a picture that follows every change.
+//!
+//! The window's thread never waits: models are opened by [`loaded::Job`], pictures drawn by [`worker::Worker`], and both tell what
+//! they have done through [`events`]. What the picture shows is a [`Scene`], the same that `translume render --scene` takes.
+
+mod events;
+mod loaded;
+mod orbit;
+mod panels;
+mod playback;
+mod truth;
+mod viewport;
+mod worker;
+
+use crate::error::Error;
+use crate::overlay::Overlay;
+use crate::scene::Scene;
+use eframe::egui;
+use egui::util::undoer::Undoer;
+use events::{Choice, Event, Events};
+use loaded::{Job, Loaded, Wanted};
+use playback::{Play, Playback};
+use serde::{Deserialize, Serialize};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::mpsc::Receiver;
+use truth::{Judged, Task, Traced};
+use worker::{Adapter, Counters, Order, Wish, Worker};
+
+/// What is shown first.
+const FIRST: &str = "creature";
+/// How long nothing may change before the picture gets finer, seconds.
+const STILL: f64 = 0.25;
+/// Samples along each side of a pixel of a picture that stands still.
+const FINE: u32 = 2;
+/// Files that are remembered.
+const RECENT: usize = 8;
+
+/// Everything that is kept between runs.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+#[serde(default)]
+struct Memory {
+    scene: Option<Scene>,
+    recent: Vec<PathBuf>,
+    playback: Playback,
+}
+
+/// The program's window.
+pub struct App {
+    /// What the user has set.
+    scene: Scene,
+    loaded: Option<Arc<Loaded>>,
+    job: Option<Job>,
+    /// Whether the job's scene takes the place of all that is set, and not only of the model.
+    replaces: bool,
+    playback: Playback,
+    recent: Vec<PathBuf>,
+    undoer: Undoer<Scene>,
+
+    events: Events,
+    inbox: Receiver<Event>,
+    worker: Worker,
+    adapter: Option<Adapter>,
+    /// The picture that the worker is at, or was at last.
+    ordered: Option<Wish>,
+    is_waiting: bool,
+    picture: Option<egui::TextureHandle>,
+    overlay: Overlay,
+    atlas: Option<egui::TextureHandle>,
+    shows_atlas: bool,
+    counters: Option<Counters>,
+    judging: Option<Task>,
+    judged: Option<Judged>,
+    no_errors: Arc<Vec<f32>>,
+    beside: panels::Beside,
+    /// The picture beside, where there is one.
+    other: Option<egui::TextureHandle>,
+    tracing: Option<Task>,
+    traced: Option<Traced>,
+    /// What was traced.
+    traced_scene: Option<Scene>,
+    paths: Option<egui::TextureHandle>,
+    frames: panels::Frames,
+    /// When something last changed, and when the window was last drawn; seconds.
+    changed: f64,
+    drawn: f64,
+    troubles: Vec<String>,
+    notices: Vec<String>,
+    shows_keys: bool,
+    view: viewport::Viewport,
+}
+
+/// Opens the window and stays until it is closed.
+pub fn run() -> Result<(), Error> {
+    let options = eframe::NativeOptions {
+        viewport: egui::ViewportBuilder::default()
+            .with_title("Translume")
+            .with_app_id("translume")
+            .with_inner_size([1280.0, 800.0])
+            .with_min_inner_size([720.0, 480.0])
+            .with_drag_and_drop(true),
+        ..Default::default()
+    };
+    let start: eframe::AppCreator<'_> = Box::new(|context| Ok(Box::new(App::new(context, None))));
+    eframe::run_native("translume", options, start).map_err(|error| Error::Window(error.to_string()))
+}
+
+impl App {
+    /// With what was set when it was last closed, or with the model or scene of this name.
+    pub fn new(context: &eframe::CreationContext<'_>, name: Option<&str>) -> Self {
+        let memory = context.storage.and_then(|storage| eframe::get_value::<Memory>(storage, eframe::APP_KEY));
+        let Memory { scene, recent, playback } = memory.unwrap_or_default();
+        let (events, inbox) = Events::new(context.egui_ctx.clone());
+        let mut app = Self {
+            scene: Scene::of_model(FIRST),
+            loaded: None,
+            job: None,
+            replaces: true,
+            playback,
+            recent,
+            undoer: Undoer::default(),
+            worker: Worker::start(&events),
+            events,
+            inbox,
+            adapter: None,
+            ordered: None,
+            is_waiting: false,
+            picture: None,
+            overlay: Overlay::None,
+            atlas: None,
+            shows_atlas: true,
+            counters: None,
+            judging: None,
+            judged: None,
+            no_errors: Arc::default(),
+            beside: panels::Beside::Nothing,
+            other: None,
+            tracing: None,
+            traced: None,
+            traced_scene: None,
+            paths: None,
+            frames: panels::Frames::default(),
+            changed: 0.0,
+            drawn: 0.0,
+            troubles: Vec::new(),
+            notices: Vec::new(),
+            shows_keys: false,
+            view: viewport::Viewport::default(),
+        };
+        match (name, scene) {
+            (Some(name), _) => app.open(name),
+            (None, Some(scene)) => app.start(Wanted { scene, assumes_size: false }, true),
+            (None, None) => app.open(FIRST),
+        }
+        app
+    }
+
+    /// Opens a model or a scene, or takes a map of the sky for the light.
+    fn open(&mut self, name: &str) {
+        let ending = Path::new(name).extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase());
+        if matches!(ending.as_deref(), Some("exr" | "hdr")) {
+            return panels::light_from(self, Path::new(name));
+        }
+        match loaded::scene_of(name) {
+            Ok(wanted) => {
+                self.remember(name);
+                self.start(wanted, true);
+            }
+            Err(error) => self.trouble(&error),
+        }
+    }
+
+    fn remember(&mut self, name: &str) {
+        let Ok(path) = std::path::absolute(name) else { return };
+        if path.is_file() {
+            self.recent.retain(|other| *other != path);
+            self.recent.insert(0, path);
+            self.recent.truncate(RECENT);
+        }
+    }
+
+    /// Opens the model of a scene; what was being opened is dropped.
+    fn start(&mut self, wanted: Wanted, replaces: bool) {
+        self.replaces = replaces;
+        self.job = Some(Job::start(wanted, self.loaded.as_ref(), &self.events));
+    }
+
+    /// Makes this the scene, and its model another if it asks for that.
+    fn set(&mut self, scene: Scene) {
+        if self.loaded.as_ref().is_some_and(|loaded| loaded.fits(&scene)) {
+            self.scene = scene;
+        } else {
+            self.start(Wanted { scene, assumes_size: false }, false);
+        }
+    }
+
+    fn trouble(&mut self, error: &dyn std::fmt::Display) {
+        let words = error.to_string();
+        if !self.troubles.contains(&words) {
+            self.troubles.push(words);
+        }
+    }
+
+    fn hear(&mut self, context: &egui::Context) {
+        while let Ok(event) = self.inbox.try_recv() {
+            match event {
+                Event::Ready(Ok(adapter)) => self.adapter = Some(adapter),
+                Event::Ready(Err(error)) => self.trouble(&error),
+                Event::Progress { job, stage, share } => {
+                    if let Some(current) = self.job.as_mut().filter(|current| current.is(job)) {
+                        (current.stage, current.share) = (stage, share);
+                    }
+                }
+                Event::Opened { job, result } if self.job.as_ref().is_some_and(|current| current.is(job)) => {
+                    self.job = None;
+                    match result {
+                        Ok(opened) => self.take(*opened),
+                        Err(error) => self.trouble(&error),
+                    }
+                }
+                Event::Opened { .. } => {}
+                Event::Shown(result) => {
+                    self.is_waiting = false;
+                    match result {
+                        Ok(shown) => {
+                            self.frames.add(&shown);
+                            self.counters = shown.counters.or(self.counters);
+                            set(context, &mut self.picture, Some(shown.image));
+                            set(context, &mut self.other, shown.other);
+                            set(context, &mut self.atlas, shown.atlas);
+                        }
+                        Err(error) => self.trouble(&error),
+                    }
+                }
+                Event::Traced(task, result) if self.tracing.as_ref().is_some_and(|t| t.is(task)) => match result {
+                    Ok(traced) => {
+                        set(context, &mut self.paths, Some(traced.image.clone()));
+                        if traced.done {
+                            self.tracing = None;
+                        }
+                        self.traced = Some(traced);
+                    }
+                    Err(error) => {
+                        self.tracing = None;
+                        self.trouble(&error);
+                    }
+                },
+                Event::Judged(task, result) if self.judging.as_ref().is_some_and(|t| t.is(task)) => {
+                    self.judging = None;
+                    match result {
+                        Ok(judged) => self.judged = Some(judged),
+                        Err(error) => self.trouble(&error),
+                    }
+                }
+                Event::Traced(..) | Event::Judged(..) => {}
+                Event::Chosen(choice, path) => panels::chosen(self, choice, &path),
+                Event::Written(Ok(path)) => self.notices.push(format!("{} is written", path.display())),
+                Event::Written(Err(error)) => self.trouble(&error),
+            }
+        }
+    }
+
+    fn take(&mut self, (scene, loaded): (Scene, Arc<Loaded>)) {
+        if self.replaces {
+            self.playback.phase = 0.0;
+            self.undoer = Undoer::default();
+            self.scene = scene;
+        } else {
+            let Scene { shape, up, into, quality, .. } = scene;
+            (self.scene.shape, self.scene.up, self.scene.into) = (shape, up, into);
+            self.scene.quality = quality;
+            self.scene.morph.truncate(loaded.opened.model.mesh.targets.len());
+        }
+        self.loaded = Some(loaded);
+    }
+
+    /// The scene as it stands at this moment, seen through a view of so many pixels.
+    fn moment(&self, loaded: &Loaded, pixels: [u32; 2]) -> Scene {
+        let mut scene = self.scene.clone();
+        let model = &loaded.opened.model;
+        self.playback.apply(Play::of(&scene, model), &mut scene, model.mesh.targets.len());
+        scene.camera = scene.camera.map(|camera| orbit::shaped(camera, pixels));
+        scene
+    }
+
+    fn play(&self) -> Option<Play> {
+        self.loaded.as_ref().map(|loaded| Play::of(&self.scene, &loaded.opened.model))
+    }
+
+    /// Asks for the next picture if anything is different in it.
+    fn order(&mut self, context: &egui::Context, now: f64) {
+        let (Some(loaded), Some(pixels)) = (self.loaded.clone(), self.view.pixels()) else { return };
+        if self.is_waiting {
+            return;
+        }
+        let scene = self.moment(&loaded, pixels);
+        let moving = self.playback.playing && self.play() != Some(Play::Turn);
+        let last = self.ordered.as_ref();
+        let errors = self.errors(&loaded);
+        let other = match &self.beside {
+            panels::Beside::Other(quality) => Some(quality.clone()),
+            _ => None,
+        };
+        let is_new = last.is_none_or(|last| {
+            (last.scene != scene || last.loaded.id != loaded.id || last.pixels != pixels)
+                || (last.overlay != self.overlay || last.other != other || !Arc::ptr_eq(&last.errors, &errors))
+        });
+        if is_new {
+            self.changed = now;
+        }
+        let is_still = !self.playback.playing && now - self.changed > STILL;
+        let samples = if is_still { FINE } else { 1 };
+        if !is_new && last.is_some_and(|last| last.samples >= samples) {
+            return;
+        }
+        if !is_new && !is_still {
+            return context.request_repaint_after_secs(STILL as f32);
+        }
+        let wish = Wish { scene, loaded, pixels, samples, moving, overlay: self.overlay, errors, other };
+        self.worker.order(Order::Show(wish.clone()));
+        (self.ordered, self.is_waiting) = (Some(wish), true);
+        if !is_still {
+            context.request_repaint_after_secs(STILL as f32);
+        }
+    }
+
+    /// Of this model's texels, where they were computed.
+    fn errors(&self, loaded: &Loaded) -> Arc<Vec<f32>> {
+        let judged = self.judged.as_ref().filter(|judged| judged.loaded == loaded.id);
+        judged.map_or_else(|| Arc::clone(&self.no_errors), |judged| Arc::clone(&judged.errors))
+    }
+
+    /// Keeps changes for [`Self::undo`]; where the camera stands is not one.
+    fn note(&mut self, now: f64) {
+        let state = Scene { camera: None, ..self.scene.clone() };
+        self.undoer.feed_state(now, &state);
+    }
+
+    fn undo(&mut self, again: bool) {
+        let state = Scene { camera: None, ..self.scene.clone() };
+        let other = if again { self.undoer.redo(&state) } else { self.undoer.undo(&state) };
+        if let Some(other) = other.cloned() {
+            let camera = self.scene.camera;
+            self.set(Scene { camera, ..other });
+        }
+    }
+
+    /// The model as large as the view.
+    fn frame_all(&mut self) {
+        let Some(loaded) = &self.loaded else { return };
+        let scene = Scene { camera: None, ..self.scene.clone() };
+        match loaded.opened.subject(&scene, 1) {
+            Ok(subject) => self.scene.camera = Some(crate::setup::camera(&scene, &subject, crate::setup::VIEW)),
+            Err(error) => self.trouble(&error),
+        }
+    }
+
+    /// Asks for a file without keeping the window waiting.
+    fn ask(&self, choice: Choice) {
+        let events = self.events.clone();
+        std::thread::spawn(move || {
+            if let Some(path) = panels::dialogue(choice) {
+                events.send(Event::Chosen(choice, path));
+            }
+        });
+    }
+}
+
+/// Puts an image into a texture that may have to be made.
+fn set(context: &egui::Context, texture: &mut Option<egui::TextureHandle>, image: Option<egui::ColorImage>) {
+    let options = egui::TextureOptions::LINEAR;
+    match (image, texture.as_mut()) {
+        (Some(image), Some(texture)) => texture.set(image, options),
+        (Some(image), None) => *texture = Some(context.load_texture("picture", image, options)),
+        (None, _) => *texture = None,
+    }
+}
+
+impl eframe::App for App {
+    fn ui(&mut self, ui: &mut egui::Ui, _: &mut eframe::Frame) {
+        let context = ui.ctx().clone();
+        let now = context.input(|input| input.time);
+        self.hear(&context);
+        if let Some(play) = self.play() {
+            self.playback.advance(play, (now - self.drawn).clamp(0.0, 1.0) as f32);
+        }
+        self.drawn = now;
+        panels::keys(self, &context);
+        let dropped = context.input(|input| input.raw.dropped_files.clone());
+        for path in dropped.iter().map(|file| file.path().to_owned()) {
+            self.open(&path.to_string_lossy());
+        }
+        panels::show(self, ui);
+        viewport::show(self, ui);
+        self.note(now);
+        self.order(&context, now);
+    }
+
+    fn save(&mut self, storage: &mut dyn eframe::Storage) {
+        let scene = self.loaded.as_ref().map(|_| self.scene.clone());
+        let memory = Memory { scene, recent: self.recent.clone(), playback: self.playback };
+        eframe::set_value(storage, eframe::APP_KEY, &memory);
+    }
+}

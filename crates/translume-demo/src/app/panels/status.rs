@@ -1,0 +1,51 @@
+//! The line at the bottom: who draws, how fast, and what went wrong.
+
+use super::super::App;
+use eframe::egui;
+use egui::{ProgressBar, RichText};
+
+pub fn show(app: &mut App, ui: &mut egui::Ui) {
+    troubles(app, ui);
+    ui.horizontal_wrapped(|ui| {
+        if let Some(job) = &app.job {
+            let bar = ProgressBar::new(job.share.unwrap_or(0.0)).text(job.stage).desired_width(200.0);
+            ui.add(bar.animate(job.share.is_none()));
+            if ui.button("Cancel").clicked() {
+                app.job = None;
+            }
+        }
+        match &app.adapter {
+            None => ui.spinner(),
+            Some(adapter) => {
+                ui.label(&adapter.name);
+                if adapter.is_software {
+                    let note = "the processor draws this: a graphics card is a hundred times faster";
+                    ui.label(RichText::new(note).color(ui.visuals().warn_fg_color));
+                }
+                ui.separator()
+            }
+        };
+        if let Some(ms) = app.frames.median() {
+            ui.label(format!("{ms:.0} ms a picture"));
+        }
+        if let Some(notice) = app.notices.last() {
+            ui.separator();
+            ui.label(notice);
+        }
+    });
+}
+
+fn troubles(app: &mut App, ui: &mut egui::Ui) {
+    let mut closed = None;
+    for (k, words) in app.troubles.iter().enumerate() {
+        ui.horizontal_wrapped(|ui| {
+            if ui.small_button("✖").on_hover_text("close").clicked() {
+                closed = Some(k);
+            }
+            ui.label(RichText::new(words).color(ui.visuals().error_fg_color));
+        });
+    }
+    if let Some(k) = closed {
+        app.troubles.remove(k);
+    }
+}

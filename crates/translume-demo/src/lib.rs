@@ -1,0 +1,49 @@
+//! The program `translume`: look at translucent models in a window, render, inspect and measure them.
+
+mod app;
+mod canvas;
+mod cli;
+mod develop;
+mod environment;
+mod error;
+mod framing;
+mod gpu;
+mod inspect;
+mod model;
+mod motion;
+mod overlay;
+mod paint;
+mod picture;
+mod profile;
+mod progress;
+mod render;
+mod report;
+mod scene;
+mod setup;
+mod studio;
+mod timings;
+mod trace;
+
+use clap::Parser as _;
+use std::process::ExitCode;
+
+/// The program, by its command line.
+#[must_use]
+pub fn main() -> ExitCode {
+    env_logger::Builder::from_env(env_logger::Env::default().default_filter_or("error")).init();
+    let result = match cli::Arguments::parse().command {
+        None => app::run(),
+        Some(cli::Command::Render(arguments)) => render::run(&arguments),
+        Some(cli::Command::Inspect(arguments)) => inspect::run(&arguments),
+        Some(cli::Command::Profile(arguments)) => profile::run(&arguments),
+        Some(cli::Command::Trace(arguments)) => trace::run(&arguments),
+        Some(cli::Command::Report(arguments)) => report::run(&arguments),
+    };
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            progress::tell(&format!("translume: {error}"));
+            ExitCode::from(2)
+        }
+    }
+}

@@ -1,0 +1,150 @@
+//! How a scene is computed, and how its picture is developed.
+
+use crate::error::Error;
+use crate::profile;
+use serde::{Deserialize, Serialize};
+use std::path::Path;
+use translume::{Evaluate, Gloss, Method, Profile, ShadowOptions};
+use translume_mesh::{AtlasOptions, ChartSource};
+
+/// Everything that trades error for time. The names are those of the command line.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Quality {
+    /// By name, or the name of a table's .json.
+    pub profile: String,
+    /// dual, tree, all-pairs or pattern.
+    pub method: String,
+    /// Of dual, 0.0001 to 0.1; by default 0.01.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub tolerance: Option<f32>,
+    /// Of tree, or of dual in place of a tolerance; 0.05 to 2.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub theta: Option<f32>,
+    /// texel, vertex, fragment or auto.
+    pub evaluate: String,
+    /// Width of the atlas in texels.
+    pub atlas: u32,
+    /// unwrap, own or auto.
+    pub charts: String,
+    /// Whether charts are evened out.
+    pub even: bool,
+    /// Width of a shadow map in texels.
+    pub shadow: u32,
+    /// Directions in which the body's shadow on the sky is known.
+    pub directions: u32,
+}
+
+impl Default for Quality {
+    fn default() -> Self {
+        Self {
+            profile: "half-space".to_owned(),
+            method: "dual".to_owned(),
+            tolerance: None,
+            theta: None,
+            evaluate: "texel".to_owned(),
+            atlas: 512,
+            charts: "unwrap".to_owned(),
+            even: false,
+            shadow: 2048,
+            directions: 256,
+        }
+    }
+}
+
+/// How the picture is developed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Look {
+    /// Roughness of the surface's own reflection, 0.03 to 1; 0 for none.
+    pub gloss: f32,
+    /// Stops.
+    pub exposure: f32,
+}
+
+/// The tolerance of dual where none is given.
+pub const TOLERANCE: f32 = 0.01;
+/// The opening angle of tree where none is given.
+pub const THETA: f32 = 0.4;
+
+impl Quality {
+    pub const METHODS: [&'static str; 4] = ["dual", "tree", "all-pairs", "pattern"];
+    pub const CHARTS: [&'static str; 3] = ["unwrap", "own", "auto"];
+
+    /// The profile, a table's file taken relative to `directory`.
+    pub fn profile(&self, directory: &Path) -> Result<Profile, Error> {
+        profile::open(&self.profile, directory)
+    }
+
+    pub fn method(&self) -> Result<Method, Error> {
+        let name = self.method.as_str();
+        let fail = |option, problem| Err(Error::Option { option, problem });
+        if self.tolerance.is_some() && name != "dual" {
+            return fail("--tolerance", format!("{name} has none; only dual keeps a tolerance"));
+        }
+        if self.theta.is_some() && !matches!(name, "dual" | "tree") {
+            return fail("--theta", format!("{name} has no opening angle; dual and tree have"));
+        }
+        let tolerance = self.tolerance.unwrap_or(TOLERANCE);
+        if !(0.0001..=0.1).contains(&tolerance) {
+            return fail("--tolerance", format!("{tolerance} is not between 0.0001 and 0.1"));
+        }
+        if let Some(theta) = self.theta.filter(|theta| !(0.05..=2.0).contains(theta)) {
+            return fail("--theta", format!("{theta} is not between 0.05 and 2"));
+        }
+        match (name, self.theta) {
+            ("dual", None) => Ok(Method::Within { tolerance }),
+            ("dual", Some(theta)) => Ok(Method::Dual { theta }),
+            ("tree", theta) => Ok(Method::Tree { theta: theta.unwrap_or(THETA) }),
+            ("all-pairs", _) => Ok(Method::AllPairs),
+            ("pattern", _) => Ok(Method::Pattern),
+            (other, _) => fail(
+                "--method",
+                format!("no method is called \"{other}\"; known are {}", Self::METHODS.join(", ")),
+            ),
+        }
+    }
+
+    pub fn evaluate(&self) -> Result<Evaluate, Error> {
+        let name = self.evaluate.as_str();
+        let fail = |problem| Err(Error::Option { option: "--evaluate", problem });
+        match Evaluate::NAMES.iter().find(|(known, _)| *known == name) {
+            None => fail(format!("\"{name}\" is no place; known are texel, vertex, fragment, auto")),
+            Some((_, Evaluate::PerVertex | Evaluate::PerFragment)) if self.method != "dual" => {
+                fail(format!("{} is evaluated at texels alone; use dual", self.method))
+            }
+            Some((_, evaluate)) => Ok(*evaluate),
+        }
+    }
+
+    pub fn atlas(&self) -> Result<AtlasOptions, Error> {
+        let charts = match self.charts.as_str() {
+            "unwrap" => ChartSource::Unwrap,
+            "own" => ChartSource::Own,
+            "auto" => ChartSource::OwnOrUnwrap,
+            other => {
+                let known = Self::CHARTS.join(", ");
+                let problem = format!("no source of charts is called \"{other}\"; known are {known}");
+                return Err(Error::Option { option: "--charts", problem });
+            }
+        };
+        Ok(AtlasOptions { size: self.atlas, charts, equiareal: self.even, ..Default::default() })
+    }
+
+    pub fn shadows(&self) -> ShadowOptions {
+        ShadowOptions { resolution: self.shadow, directions: self.directions, ..Default::default() }
+    }
+}
+
+impl Look {
+    pub fn gloss(&self) -> Result<Gloss, Error> {
+        match self.gloss {
+            0.0 => Ok(Gloss::None),
+            roughness if (0.03..=1.0).contains(&roughness) => Ok(Gloss::Rough(roughness)),
+            other => Err(Error::Option {
+                option: "--gloss",
+                problem: format!("{other} is neither 0 nor between 0.03 and 1"),
+            }),
+        }
+    }
+}
