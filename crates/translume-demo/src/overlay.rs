@@ -80,9 +80,8 @@ pub fn errors(found: &[[f32; 4]], right: &[[f32; 4]]) -> Vec<f32> {
     let count = right.len().max(1) as f32;
     let mean = |k: usize| (right.iter().map(|rgb| rgb[k]).sum::<f32>() / count).max(f32::MIN_POSITIVE);
     let means = [mean(0), mean(1), mean(2)];
-    let error = |(a, b): (&[f32; 4], &[f32; 4])| {
-        (0..3).map(|k| (a[k] - b[k]).abs() / means[k]).fold(0.0, f32::max)
-    };
+    let error =
+        |(a, b): (&[f32; 4], &[f32; 4])| (0..3).map(|k| (a[k] - b[k]).abs() / means[k]).fold(0.0, f32::max);
     found.iter().zip(right).map(error).collect()
 }
 

@@ -30,7 +30,11 @@ impl Outlines {
         let indices: Vec<u8> =
             atlas.triangles.as_flattened().iter().copied().flat_map(u32::to_le_bytes).collect();
         let buffer = |label, contents: &[u8], usage| {
-            device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: Some(label), contents, usage })
+            device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+                label: Some(label),
+                contents,
+                usage,
+            })
         };
         Self {
             vertices: buffer("atlas vertices", &vertices, wgpu::BufferUsages::STORAGE),

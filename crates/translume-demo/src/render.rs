@@ -114,7 +114,8 @@ fn scene(arguments: &Render) -> Result<(Scene, PathBuf), Error> {
     if arguments.up == "z" {
         scene.up = Up::Z;
     }
-    scene.into = arguments.into.as_ref().map(|shape| if shape == "sphere" { Round::Sphere } else { Round::Egg });
+    scene.into =
+        arguments.into.as_ref().map(|shape| if shape == "sphere" { Round::Sphere } else { Round::Egg });
     Ok((scene, PathBuf::new()))
 }
 

@@ -89,7 +89,8 @@ impl Substance {
     /// Whether a body of one becomes a body of the other by another medium and other shadows.
     pub fn is_like(&self, other: &Self) -> bool {
         let Self { profile, method, evaluate, mm_per_unit, .. } = other;
-        (&self.profile, &self.method, &self.evaluate, &self.mm_per_unit) == (profile, method, evaluate, mm_per_unit)
+        (&self.profile, &self.method, &self.evaluate, &self.mm_per_unit)
+            == (profile, method, evaluate, mm_per_unit)
     }
 
     pub fn descriptor<'a>(&self, mesh: &'a Mesh, atlas: &'a Atlas, flat_normals: bool) -> BodyDescriptor<'a> {

@@ -4,9 +4,7 @@ use crate::canvas::Canvas;
 use crate::error::Error;
 use crate::gpu::Gpu;
 use crate::picture::{Develop, Picture};
-use translume::{
-    Body, BodyDescriptor, Camera, CompositeView, Frame, Gloss, Translume, readback, wgpu,
-};
+use translume::{Body, BodyDescriptor, Camera, CompositeView, Frame, Gloss, Translume, readback, wgpu};
 
 /// A body in front of a camera, off screen.
 pub struct Studio {

@@ -13,8 +13,15 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 pub enum Event {
     /// The GPU can be used, or why not.
     Ready(Result<Adapter, Error>),
-    Progress { job: u64, stage: &'static str, share: Option<f32> },
-    Opened { job: u64, result: Result<Box<(Scene, Arc<Loaded>)>, Error> },
+    Progress {
+        job: u64,
+        stage: &'static str,
+        share: Option<f32>,
+    },
+    Opened {
+        job: u64,
+        result: Result<Box<(Scene, Arc<Loaded>)>, Error>,
+    },
     Shown(Result<Shown, Error>),
     /// Of the task with this number.
     Traced(u64, Result<Traced, Error>),

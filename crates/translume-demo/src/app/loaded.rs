@@ -4,11 +4,11 @@ use super::events::{Event, Events};
 use crate::error::Error;
 use crate::model::Watch;
 use crate::render::{ASSUMED_DIAGONAL_MM, DEFAULT_ROUGHNESS};
-use crate::scene::{Round, Scene, SceneLight, Shape, Up};
+use crate::scene::{Quality, Round, Scene, SceneLight, Shape, Up};
 use crate::setup::{Opened, VIEW, camera};
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::{Arc, Mutex};
 use translume_mesh::{Atlas, Progress};
 
 /// A model with its atlas.
@@ -80,7 +80,9 @@ impl Job {
         static NUMBER: AtomicU64 = AtomicU64::new(1);
         let number = NUMBER.fetch_add(1, Ordering::Relaxed);
         let cancelled = Arc::new(AtomicBool::new(false));
-        let known = known.filter(|known| known.mesh == MeshKey::of(&wanted.scene)).map(|known| Arc::clone(&known.opened));
+        let known = known
+            .filter(|known| known.mesh == MeshKey::of(&wanted.scene))
+            .map(|known| Arc::clone(&known.opened));
         let job = Self { stage: "starting", share: None, number, cancelled: Arc::clone(&cancelled) };
         let events = events.clone();
         std::thread::spawn(move || {
@@ -141,8 +143,9 @@ fn open(
     Ok((scene, Arc::new(Loaded { id, opened, atlas, layout, mesh })))
 }
 
-/// A model or a scene by the name of its file, or a built-in, with all paths made absolute.
-pub fn scene_of(name: &str) -> Result<Wanted, Error> {
+/// A model or a scene by the name of its file, or a built-in, with all paths made absolute. A model, which does not say how it is to be
+/// computed, gets a `quality` that suits the adapter.
+pub fn scene_of(name: &str, quality: Quality) -> Result<Wanted, Error> {
     let path = Path::new(name);
     let ending = path.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase());
     if ending.as_deref() == Some("json") {
@@ -152,6 +155,7 @@ pub fn scene_of(name: &str) -> Result<Wanted, Error> {
     }
     let mut scene = Scene::of_model(name);
     scene.look.gloss = DEFAULT_ROUGHNESS;
+    scene.quality = quality;
     place(&mut scene, Path::new(""));
     Ok(Wanted { scene, assumes_size: true })
 }

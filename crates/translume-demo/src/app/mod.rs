@@ -14,7 +14,7 @@ mod worker;
 
 use crate::error::Error;
 use crate::overlay::Overlay;
-use crate::scene::Scene;
+use crate::scene::{Quality, Scene};
 use eframe::egui;
 use egui::util::undoer::Undoer;
 use events::{Choice, Event, Events};
@@ -45,6 +45,12 @@ struct Memory {
     playback: Playback,
 }
 
+/// What the window opens with.
+enum First {
+    Name(String),
+    Scene(Box<Scene>),
+}
+
 /// The program's window.
 pub struct App {
     /// What the user has set.
@@ -61,8 +67,14 @@ pub struct App {
     inbox: Receiver<Event>,
     worker: Worker,
     adapter: Option<Adapter>,
+    /// What is opened once the adapter is known.
+    first: Option<First>,
     /// The picture that the worker is at, or was at last.
     ordered: Option<Wish>,
+    /// What is set in a picture that could be shown.
+    good: Option<Scene>,
+    /// What was set when the last picture was ordered.
+    asked: Option<Scene>,
     is_waiting: bool,
     picture: Option<egui::TextureHandle>,
     overlay: Overlay,
@@ -108,7 +120,8 @@ pub fn run() -> Result<(), Error> {
 impl App {
     /// With what was set when it was last closed, or with the model or scene of this name.
     pub fn new(context: &eframe::CreationContext<'_>, name: Option<&str>) -> Self {
-        let memory = context.storage.and_then(|storage| eframe::get_value::<Memory>(storage, eframe::APP_KEY));
+        let memory =
+            context.storage.and_then(|storage| eframe::get_value::<Memory>(storage, eframe::APP_KEY));
         let Memory { scene, recent, playback } = memory.unwrap_or_default();
         let (events, inbox) = Events::new(context.egui_ctx.clone());
         let mut app = Self {
@@ -123,7 +136,10 @@ impl App {
             events,
             inbox,
             adapter: None,
+            first: None,
             ordered: None,
+            good: None,
+            asked: None,
             is_waiting: false,
             picture: None,
             overlay: Overlay::None,
@@ -147,11 +163,10 @@ impl App {
             shows_keys: false,
             view: viewport::Viewport::default(),
         };
-        match (name, scene) {
-            (Some(name), _) => app.open(name),
-            (None, Some(scene)) => app.start(Wanted { scene, assumes_size: false }, true),
-            (None, None) => app.open(FIRST),
-        }
+        app.first = Some(match (name, scene) {
+            (None, Some(scene)) => First::Scene(Box::new(scene)),
+            (name, _) => First::Name(name.unwrap_or(FIRST).to_owned()),
+        });
         app
     }
 
@@ -161,12 +176,22 @@ impl App {
         if matches!(ending.as_deref(), Some("exr" | "hdr")) {
             return panels::light_from(self, Path::new(name));
         }
-        match loaded::scene_of(name) {
+        match loaded::scene_of(name, self.quality()) {
             Ok(wanted) => {
                 self.remember(name);
                 self.start(wanted, true);
             }
             Err(error) => self.trouble(&error),
+        }
+    }
+
+    /// What a model is computed with if nothing is said: a processor gets a quarter of the texels.
+    fn quality(&self) -> Quality {
+        match &self.adapter {
+            Some(Adapter { is_software: true, .. }) => {
+                Quality { atlas: 256, shadow: 1024, directions: 64, ..Quality::default() }
+            }
+            _ => Quality::default(),
         }
     }
 
@@ -204,7 +229,16 @@ impl App {
     fn hear(&mut self, context: &egui::Context) {
         while let Ok(event) = self.inbox.try_recv() {
             match event {
-                Event::Ready(Ok(adapter)) => self.adapter = Some(adapter),
+                Event::Ready(Ok(adapter)) => {
+                    self.adapter = Some(adapter);
+                    match self.first.take() {
+                        Some(First::Name(name)) => self.open(&name),
+                        Some(First::Scene(scene)) => {
+                            self.start(Wanted { scene: *scene, assumes_size: false }, true);
+                        }
+                        None => {}
+                    }
+                }
                 Event::Ready(Err(error)) => self.trouble(&error),
                 Event::Progress { job, stage, share } => {
                     if let Some(current) = self.job.as_mut().filter(|current| current.is(job)) {
@@ -224,27 +258,33 @@ impl App {
                     match result {
                         Ok(shown) => {
                             self.frames.add(&shown);
+                            self.good = self.asked.take();
                             self.counters = shown.counters.or(self.counters);
                             set(context, &mut self.picture, Some(shown.image));
                             set(context, &mut self.other, shown.other);
                             set(context, &mut self.atlas, shown.atlas);
                         }
-                        Err(error) => self.trouble(&error),
+                        Err(error) => {
+                            self.trouble(&error);
+                            self.go_back();
+                        }
                     }
                 }
-                Event::Traced(task, result) if self.tracing.as_ref().is_some_and(|t| t.is(task)) => match result {
-                    Ok(traced) => {
-                        set(context, &mut self.paths, Some(traced.image.clone()));
-                        if traced.done {
-                            self.tracing = None;
+                Event::Traced(task, result) if self.tracing.as_ref().is_some_and(|t| t.is(task)) => {
+                    match result {
+                        Ok(traced) => {
+                            set(context, &mut self.paths, Some(traced.image.clone()));
+                            if traced.done {
+                                self.tracing = None;
+                            }
+                            self.traced = Some(traced);
                         }
-                        self.traced = Some(traced);
+                        Err(error) => {
+                            self.tracing = None;
+                            self.trouble(&error);
+                        }
                     }
-                    Err(error) => {
-                        self.tracing = None;
-                        self.trouble(&error);
-                    }
-                },
+                }
                 Event::Judged(task, result) if self.judging.as_ref().is_some_and(|t| t.is(task)) => {
                     self.judging = None;
                     match result {
@@ -257,6 +297,13 @@ impl App {
                 Event::Written(Ok(path)) => self.notices.push(format!("{} is written", path.display())),
                 Event::Written(Err(error)) => self.trouble(&error),
             }
+        }
+    }
+
+    /// To the last scene that could be shown.
+    fn go_back(&mut self) {
+        if let Some(good) = self.good.take() {
+            self.scene = Scene { camera: self.scene.camera, ..good };
         }
     }
 
@@ -303,7 +350,9 @@ impl App {
         };
         let is_new = last.is_none_or(|last| {
             (last.scene != scene || last.loaded.id != loaded.id || last.pixels != pixels)
-                || (last.overlay != self.overlay || last.other != other || !Arc::ptr_eq(&last.errors, &errors))
+                || (last.overlay != self.overlay
+                    || last.other != other
+                    || !Arc::ptr_eq(&last.errors, &errors))
         });
         if is_new {
             self.changed = now;
@@ -318,6 +367,7 @@ impl App {
         }
         let wish = Wish { scene, loaded, pixels, samples, moving, overlay: self.overlay, errors, other };
         self.worker.order(Order::Show(wish.clone()));
+        self.asked = Some(self.scene.clone());
         (self.ordered, self.is_waiting) = (Some(wish), true);
         if !is_still {
             context.request_repaint_after_secs(STILL as f32);
@@ -350,7 +400,9 @@ impl App {
         let Some(loaded) = &self.loaded else { return };
         let scene = Scene { camera: None, ..self.scene.clone() };
         match loaded.opened.subject(&scene, 1) {
-            Ok(subject) => self.scene.camera = Some(crate::setup::camera(&scene, &subject, crate::setup::VIEW)),
+            Ok(subject) => {
+                self.scene.camera = Some(crate::setup::camera(&scene, &subject, crate::setup::VIEW))
+            }
             Err(error) => self.trouble(&error),
         }
     }

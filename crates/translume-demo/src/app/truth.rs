@@ -52,8 +52,10 @@ pub struct Task {
 impl Task {
     fn start(work: impl FnOnce(u64, &AtomicBool) + Send + 'static) -> Self {
         static NUMBER: AtomicU64 = AtomicU64::new(1);
-        let task =
-            Self { number: NUMBER.fetch_add(1, Ordering::Relaxed), cancelled: Arc::new(AtomicBool::new(false)) };
+        let task = Self {
+            number: NUMBER.fetch_add(1, Ordering::Relaxed),
+            cancelled: Arc::new(AtomicBool::new(false)),
+        };
         let (number, cancelled) = (task.number, Arc::clone(&task.cancelled));
         std::thread::spawn(move || work(number, &cancelled));
         task
@@ -71,8 +73,7 @@ impl Task {
             let start = Instant::now();
             let exposure = scene.look.exposure;
             let traced = |samples: Vec<[f32; 4]>, width: usize, noise, done| {
-                let picture =
-                    Picture::from_samples(&samples, width as u32, 1, Develop::Display { exposure });
+                let picture = Picture::from_samples(&samples, width as u32, 1, Develop::Display { exposure });
                 let size = [picture.width as usize, picture.height as usize];
                 let image = egui::ColorImage::from_rgb(size, &picture.to_srgb());
                 Traced { image, noise, seconds: start.elapsed().as_secs_f64(), done }
@@ -86,9 +87,9 @@ impl Task {
                 })
             });
             if !cancelled.load(Ordering::Relaxed) {
-                send(result.map(|estimate| {
-                    traced(samples(&estimate), estimate.width, estimate.noise(), true)
-                }));
+                send(
+                    result.map(|estimate| traced(samples(&estimate), estimate.width, estimate.noise(), true)),
+                );
             }
         })
     }

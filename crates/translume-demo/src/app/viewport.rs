@@ -51,7 +51,13 @@ pub fn show(app: &mut App, ui: &mut egui::Ui) {
             let share = job.share.map_or(String::new(), |share| format!(" {:.0} %", 100.0 * share));
             let words = format!("{}{share}", job.stage);
             let font = egui::FontId::proportional(16.0);
-            ui.painter().text(rect.center_bottom() - egui::vec2(0.0, 24.0), egui::Align2::CENTER_BOTTOM, words, font, Color32::WHITE);
+            ui.painter().text(
+                rect.center_bottom() - egui::vec2(0.0, 24.0),
+                egui::Align2::CENTER_BOTTOM,
+                words,
+                font,
+                Color32::WHITE,
+            );
         }
         act(app, ui, rect, &response);
     });
@@ -75,7 +81,9 @@ fn pictures(app: &mut App, ui: &mut egui::Ui, rect: Rect) {
     }
     ui.painter().vline(x, rect.y_range(), Stroke::new(2.0, Color32::from_white_alpha(160)));
     let bar = Rect::from_center_size(Pos2::new(x, rect.center().y), egui::vec2(10.0, rect.height()));
-    let hand = ui.interact(bar, ui.scope_id().with("split"), Sense::drag()).on_hover_cursor(egui::CursorIcon::ResizeHorizontal);
+    let hand = ui
+        .interact(bar, ui.scope_id().with("split"), Sense::drag())
+        .on_hover_cursor(egui::CursorIcon::ResizeHorizontal);
     app.view.split = (app.view.split + hand.drag_delta().x / rect.width()).clamp(0.02, 0.98);
 }
 
@@ -170,8 +178,12 @@ fn drag_light(app: &mut App, light: usize, frame: &orbit::Frame, drag: Vec2) {
     let moved = frame.point(place + drag, depth);
     let target = Vec3::from(camera.target);
     match light {
-        SceneLight::Point { position, .. } | SceneLight::Spot { position, .. } => *position = moved.to_array(),
-        SceneLight::Rectangle { center, .. } | SceneLight::Sphere { center, .. } => *center = moved.to_array(),
+        SceneLight::Point { position, .. } | SceneLight::Spot { position, .. } => {
+            *position = moved.to_array()
+        }
+        SceneLight::Rectangle { center, .. } | SceneLight::Sphere { center, .. } => {
+            *center = moved.to_array()
+        }
         SceneLight::Directional { to_light: direction, .. } | SceneLight::CapEnv { axis: direction, .. } => {
             *direction = (moved - target).normalize_or(Vec3::Y).to_array();
         }
@@ -188,5 +200,10 @@ fn colour(rgb: [f32; 3]) -> Color32 {
 
 fn paint(ui: &egui::Ui, handle: &Handle, held: bool) {
     let radius = if held { 8.0 } else { 5.0 };
-    ui.painter().circle(handle.place, radius, handle.colour, Stroke::new(1.5, Color32::from_black_alpha(160)));
+    ui.painter().circle(
+        handle.place,
+        radius,
+        handle.colour,
+        Stroke::new(1.5, Color32::from_black_alpha(160)),
+    );
 }

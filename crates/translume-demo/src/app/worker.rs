@@ -87,14 +87,17 @@ impl Worker {
     pub fn start(events: &Events) -> Self {
         let (orders, inbox) = channel();
         let events = events.clone();
-        std::thread::spawn(move || match Easel::new() {
-            Ok(easel) => {
-                let Gpu { adapter, is_software, .. } = &easel.gpu;
+        std::thread::spawn(move || {
+            let easel = Gpu::new().and_then(|gpu| {
+                let Gpu { adapter, is_software, .. } = &gpu;
                 let adapter = Adapter { name: adapter.clone(), is_software: *is_software };
                 events.send(Event::Ready(Ok(adapter)));
-                easel.serve(&inbox, &events);
+                Easel::new(gpu)
+            });
+            match easel {
+                Ok(easel) => easel.serve(&inbox, &events),
+                Err(error) => events.send(Event::Ready(Err(error))),
             }
-            Err(error) => events.send(Event::Ready(Err(error))),
         });
         Self { orders }
     }
@@ -132,8 +135,7 @@ struct Lit {
 }
 
 impl Easel {
-    fn new() -> Result<Self, Error> {
-        let gpu = Gpu::new()?;
+    fn new(gpu: Gpu) -> Result<Self, Error> {
         let translume = Translume::new(&gpu.device)?;
         let (developer, painter) = (Developer::new(&gpu.device), Painter::new(&gpu.device));
         Ok(Self { gpu, translume, developer, painter, seats: [None, None] })
@@ -166,7 +168,9 @@ impl Easel {
         let image = self.develop(0, wish)?;
         let took = start.elapsed();
         let (timings, counters) = match &self.seats[0] {
-            Some(seat) if wish.samples > 1 => (seat.studio.body().timings(), Some(counters(&self.gpu, seat)?)),
+            Some(seat) if wish.samples > 1 => {
+                (seat.studio.body().timings(), Some(counters(&self.gpu, seat)?))
+            }
             Some(seat) => (seat.studio.body().timings(), None),
             None => (None, None),
         };

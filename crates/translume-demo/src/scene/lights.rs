@@ -1,8 +1,8 @@
 //! The lights of a scene.
 
+use super::is_default;
 use crate::environment::Environment;
 use crate::error::Error;
-use super::is_default;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 use translume::{

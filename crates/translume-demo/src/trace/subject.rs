@@ -2,10 +2,10 @@
 
 use crate::error::Error;
 use crate::framing;
-use crate::progress;
 use crate::motion::{Motion, Wish};
-use crate::setup::{Opened, VIEW, camera};
+use crate::progress;
 use crate::scene::{Scene, SceneCamera, Shape, Up};
+use crate::setup::{Opened, VIEW, camera};
 use std::path::Path;
 use translume_reference::composite::Camera;
 use translume_reference::path::{Ball, Block, Volume};

@@ -60,7 +60,11 @@ fn errors(app: &mut App, ui: &mut egui::Ui) {
             if ui.button("Stop").clicked() {
                 app.judging = None;
             }
-        } else if ui.button("Compute error").on_hover_text("all pairs of texels: seconds on a graphics card, minutes without").clicked() {
+        } else if ui
+            .button("Compute error")
+            .on_hover_text("all pairs of texels: seconds on a graphics card, minutes without")
+            .clicked()
+        {
             app.judge();
         }
     });
@@ -116,7 +120,11 @@ fn paths(app: &mut App, ui: &mut egui::Ui) {
             if ui.button("Stop").clicked() {
                 app.tracing = None;
             }
-        } else if ui.button("Follow paths").on_hover_text("the scene as it stands now; motion is paused").clicked() {
+        } else if ui
+            .button("Follow paths")
+            .on_hover_text("the scene as it stands now; motion is paused")
+            .clicked()
+        {
             app.trace();
         }
     });

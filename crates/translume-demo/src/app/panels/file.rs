@@ -1,8 +1,8 @@
 //! The menu, and files.
 
+use super::super::App;
 use super::super::events::Choice;
 use super::super::worker::{Order, Wish};
-use super::super::App;
 use crate::overlay::Overlay;
 use crate::picture::Output;
 use eframe::egui;

@@ -14,7 +14,7 @@ pub fn show(app: &mut App, ui: &mut egui::Ui) {
         ui.push_id(k, |ui| {
             ui.horizontal(|ui| {
                 ui.strong(light.name());
-                if ui.small_button("✖").on_hover_text("remove this light").clicked() {
+                if ui.small_button("remove").clicked() {
                     removed = Some(k);
                 }
             });
@@ -65,7 +65,9 @@ const KINDS: &[(&str, Make)] = &[
 
 /// Squared size of what is looked at: intensities in proportion light alike whatever the unit.
 fn square(app: &App) -> f32 {
-    app.scene.camera.map_or(1.0, |camera| 0.02 * glam::Vec3::from(camera.eye).distance_squared(camera.target.into()))
+    app.scene
+        .camera
+        .map_or(1.0, |camera| 0.02 * glam::Vec3::from(camera.eye).distance_squared(camera.target.into()))
 }
 
 /// A place to the right of and above what is looked at.

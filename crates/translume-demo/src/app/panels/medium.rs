@@ -22,9 +22,9 @@ pub fn show(app: &mut App, ui: &mut egui::Ui) {
         }
     });
     let Medium { mut sigma_s_prime, mut sigma_a, mut ior } = medium;
-    ui.label("scattering σs′, 1/mm");
+    ui.label("reduced scattering, 1/mm");
     coefficients(ui, &mut sigma_s_prime);
-    ui.label("absorption σa, 1/mm");
+    ui.label("absorption, 1/mm");
     coefficients(ui, &mut sigma_a);
     ui.add(Slider::new(&mut ior, 1.0..=2.0).text("index of refraction"));
     let edited = Medium { sigma_s_prime, sigma_a, ior };
@@ -43,12 +43,15 @@ fn coefficients(ui: &mut egui::Ui, values: &mut [f32; 3]) {
 
 /// A button in the colour that a thick block of it has.
 fn swatch(ui: &mut egui::Ui, name: &str, medium: &Medium, chosen: bool) -> egui::Response {
-    let [r, g, b] = Profile::Dipole.reflectance(medium).map_or([0.5; 3], |light| light.total().map(|c| c.clamp(0.0, 1.0) as f32));
+    let [r, g, b] = Profile::Dipole
+        .reflectance(medium)
+        .map_or([0.5; 3], |light| light.total().map(|c| c.clamp(0.0, 1.0) as f32));
     let fill: Color32 = egui::Rgba::from_rgb(r, g, b).into();
     let is_light = 0.3 * r + 0.6 * g + 0.1 * b > 0.25;
     let ink = if is_light { Color32::BLACK } else { Color32::WHITE };
     let button = egui::Button::new(egui::RichText::new(name).color(ink)).fill(fill).selected(false);
-    let button = if chosen { button.stroke(egui::Stroke::new(2.0, ui.visuals().strong_text_color())) } else { button };
+    let button =
+        if chosen { button.stroke(egui::Stroke::new(2.0, ui.visuals().strong_text_color())) } else { button };
     ui.add(button)
 }
 

@@ -52,7 +52,12 @@ fn section(ui: &mut egui::Ui, name: &str, open: bool, contents: impl FnOnce(&mut
 }
 
 /// A choice among names.
-fn choice(ui: &mut egui::Ui, label: &str, value: &mut String, names: impl IntoIterator<Item = &'static str>) -> bool {
+fn choice(
+    ui: &mut egui::Ui,
+    label: &str,
+    value: &mut String,
+    names: impl IntoIterator<Item = &'static str>,
+) -> bool {
     let before = value.clone();
     egui::ComboBox::from_label(label).selected_text(value.as_str()).show_ui(ui, |ui| {
         for name in names {

@@ -21,7 +21,12 @@ pub fn show(app: &mut App, ui: &mut egui::Ui) {
     };
     let model = &loaded.opened.model;
     let triangles = model.mesh.triangles.len();
-    ui.label(format!("{}: {triangles} triangles, {} texels in {} charts", model.mesh.name, loaded.atlas.texels.len(), loaded.atlas.report.charts));
+    ui.label(format!(
+        "{}: {triangles} triangles, {} texels in {} charts",
+        model.mesh.name,
+        loaded.atlas.texels.len(),
+        loaded.atlas.report.charts
+    ));
     if let Ok(diagonal) = model.diagonal() {
         let mut size = diagonal * app.scene.mm_per_unit();
         if ui.add(Slider::new(&mut size, 1.0..=10_000.0).logarithmic(true).text("mm across")).changed() {
@@ -54,7 +59,7 @@ fn shape(app: &mut App, ui: &mut egui::Ui) {
 fn motion(app: &mut App, ui: &mut egui::Ui, model: &crate::model::Model) {
     let play = Play::of(&app.scene, model);
     ui.horizontal(|ui| {
-        let name = if app.playback.playing { "⏸ Pause" } else { "▶ Play" };
+        let name = if app.playback.playing { "Pause" } else { "Play" };
         if ui.button(name).clicked() {
             app.playback.playing = !app.playback.playing;
         }

@@ -39,7 +39,7 @@ fn troubles(app: &mut App, ui: &mut egui::Ui) {
     let mut closed = None;
     for (k, words) in app.troubles.iter().enumerate() {
         ui.horizontal_wrapped(|ui| {
-            if ui.small_button("✖").on_hover_text("close").clicked() {
+            if ui.small_button("close").clicked() {
                 closed = Some(k);
             }
             ui.label(RichText::new(words).color(ui.visuals().error_fg_color));
