@@ -33,6 +33,8 @@ const FIRST: &str = "creature";
 const STILL: f64 = 0.25;
 /// Samples along each side of a pixel of a picture that stands still.
 const FINE: u32 = 2;
+/// Pictures that take longer have half as many pixels each way while something moves.
+const SLOW_MS: f32 = 60.0;
 /// Files that are remembered.
 const RECENT: usize = 8;
 
@@ -348,11 +350,10 @@ impl App {
             panels::Beside::Other(quality) => Some(quality.clone()),
             _ => None,
         };
+        // The camera knows the view's size.
         let is_new = last.is_none_or(|last| {
-            (last.scene != scene || last.loaded.id != loaded.id || last.pixels != pixels)
-                || (last.overlay != self.overlay
-                    || last.other != other
-                    || !Arc::ptr_eq(&last.errors, &errors))
+            (last.scene != scene || last.loaded.id != loaded.id)
+                || (last.overlay != self.overlay || last.other != other || !Arc::ptr_eq(&last.errors, &errors))
         });
         if is_new {
             self.changed = now;
@@ -365,6 +366,8 @@ impl App {
         if !is_new && !is_still {
             return context.request_repaint_after_secs(STILL as f32);
         }
+        let is_slow = self.frames.median().is_some_and(|ms| ms > SLOW_MS);
+        let pixels = if is_slow && !is_still { pixels.map(|pixels| pixels.div_ceil(2)) } else { pixels };
         let wish = Wish { scene, loaded, pixels, samples, moving, overlay: self.overlay, errors, other };
         self.worker.order(Order::Show(wish.clone()));
         self.asked = Some(self.scene.clone());

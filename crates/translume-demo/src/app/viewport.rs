@@ -31,6 +31,11 @@ impl Default for Viewport {
 }
 
 impl Viewport {
+    /// Where a small window hides the least of it.
+    pub fn corner(&self) -> Pos2 {
+        self.rect.map_or(Pos2::ZERO, |rect| rect.left_top() + egui::Vec2::splat(8.0))
+    }
+
     /// Width and height of the picture.
     pub fn pixels(&self) -> Option<[u32; 2]> {
         let size = self.rect?.size() * self.pixels_per_point;

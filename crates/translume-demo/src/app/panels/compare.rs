@@ -159,7 +159,9 @@ pub fn atlas(app: &mut App, context: &egui::Context) {
     let Some(texture) = app.atlas.as_ref().filter(|_| app.shows_atlas && app.overlay != Overlay::None) else {
         return;
     };
-    egui::Window::new("Atlas").open(&mut app.shows_atlas).default_size([320.0, 340.0]).show(context, |ui| {
+    let window = egui::Window::new("Atlas").default_size([300.0, 320.0]);
+    let window = window.default_pos(app.view.corner());
+    window.open(&mut app.shows_atlas).show(context, |ui| {
         let side = ui.available_width().max(64.0);
         ui.add(egui::Image::new(texture).fit_to_exact_size(egui::Vec2::splat(side)));
     });
