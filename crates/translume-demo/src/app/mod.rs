@@ -353,7 +353,9 @@ impl App {
         // The camera knows the view's size.
         let is_new = last.is_none_or(|last| {
             (last.scene != scene || last.loaded.id != loaded.id)
-                || (last.overlay != self.overlay || last.other != other || !Arc::ptr_eq(&last.errors, &errors))
+                || (last.overlay != self.overlay
+                    || last.other != other
+                    || !Arc::ptr_eq(&last.errors, &errors))
         });
         if is_new {
             self.changed = now;

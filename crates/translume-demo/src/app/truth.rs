@@ -7,10 +7,12 @@ use crate::gpu::Gpu;
 use crate::motion::Motion;
 use crate::overlay;
 use crate::picture::{Develop, Picture};
-use crate::scene::{Quality, Scene};
+use crate::scene::{Quality, Scene, SceneLight};
 use crate::setup::{Substance, library_lights};
 use crate::trace::{Limits, Subject, samples, trace};
 use eframe::egui;
+use glam::Vec3;
+use std::f32::consts::PI;
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -19,6 +21,9 @@ use translume::{Body, Frame, Lighting, Translume, readback, wgpu};
 
 /// Pixels across a picture by paths.
 const WIDTH: u32 = 192;
+/// Radius of a sphere in place of a point, of its distance to what is looked at; half angle of a cone in place of a direction.
+const LAMP: f32 = 0.15;
+const SUN_DEG: f32 = 6.0;
 /// Noise at which paths end.
 const NOISE: f64 = 0.02;
 
@@ -28,6 +33,8 @@ pub struct Traced {
     /// Standard error over the mean.
     pub noise: f64,
     pub seconds: f64,
+    /// Whether lamps were given an extent.
+    pub widened: bool,
     pub done: bool,
 }
 
@@ -72,11 +79,15 @@ impl Task {
             let send = |result| events.send(Event::Traced(number, result));
             let start = Instant::now();
             let exposure = scene.look.exposure;
+            let (scene, widened) = match with_extent(scene) {
+                Ok(wider) => wider,
+                Err(error) => return send(Err(error)),
+            };
             let traced = |samples: Vec<[f32; 4]>, width: usize, noise, done| {
                 let picture = Picture::from_samples(&samples, width as u32, 1, Develop::Display { exposure });
                 let size = [picture.width as usize, picture.height as usize];
                 let image = egui::ColorImage::from_rgb(size, &picture.to_srgb());
-                Traced { image, noise, seconds: start.elapsed().as_secs_f64(), done }
+                Traced { image, noise, seconds: start.elapsed().as_secs_f64(), widened, done }
             };
             let limits = Limits { noise: Some(NOISE), seconds: None, samples: None, seed: 1 };
             let result = Subject::new(&scene, &loaded.opened, Some(WIDTH)).and_then(|subject| {
@@ -110,6 +121,30 @@ impl Drop for Task {
     fn drop(&mut self) {
         self.cancelled.store(true, Ordering::Relaxed);
     }
+}
+
+/// The scene with lamps that paths can meet through a surface that refracts: points become spheres, directions cones of the sky, as bright as
+/// before. Says whether any did.
+fn with_extent(mut scene: Scene) -> Result<(Scene, bool), Error> {
+    let refracts = scene.medium()?.unwrap_or_default().ior != 1.0;
+    let target = scene.camera.map_or(Vec3::ZERO, |camera| camera.target.into());
+    let mut any = false;
+    for light in scene.lights.iter_mut().flatten().filter(|_| refracts) {
+        let wider = match *light {
+            SceneLight::Point { position, intensity, shadow, lit_region: None } => {
+                let radius = LAMP * target.distance(position.into());
+                let radiance = intensity.map(|c| c / (PI * radius * radius));
+                SceneLight::Sphere { center: position, radius, radiance, shadow }
+            }
+            SceneLight::Directional { to_light, irradiance, shadow, lit_region: None } => {
+                let radiance = irradiance.map(|c| c / (PI * SUN_DEG.to_radians().sin().powi(2)));
+                SceneLight::CapEnv { radiance, axis: to_light, half_angle_deg: SUN_DEG, shadow }
+            }
+            _ => continue,
+        };
+        (*light, any) = (wider, true);
+    }
+    Ok((scene, any))
 }
 
 fn judge(scene: &Scene, loaded: &Loaded) -> Result<Judged, Error> {
@@ -157,4 +192,37 @@ fn exitance(gpu: &Gpu, body: &mut Body, frame: &Frame<'_>) -> Result<Vec<[f32; 4
     body.encode(&mut encoder);
     queue.submit([encoder.finish()]);
     Ok(readback::buffer(device, queue, body.outputs().exitance)?)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn scene(ior: f32) -> Scene {
+        let text = format!(
+            r#"{{ "shape": {{ "type": "sphere", "center": [0, 0, 0], "radius": 10 }},
+                "material": {{ "sigma_s_prime": [1, 1, 1], "sigma_a": [0, 0, 0], "eta": {ior} }},
+                "lights": [
+                    {{ "type": "point", "position": [0, 0, 100], "intensity": [5, 5, 5] }},
+                    {{ "type": "directional", "to_light": [0, 1, 0], "irradiance": [2, 2, 2] }} ] }}"#
+        );
+        Scene::parse(&text, Path::new("scene.json")).unwrap()
+    }
+
+    #[test]
+    fn lamps_are_widened_where_the_surface_refracts_alone() {
+        assert_eq!(with_extent(scene(1.0)).unwrap(), (scene(1.0), false));
+        let (wider, any) = with_extent(scene(1.3)).unwrap();
+        assert!(any);
+        let [
+            SceneLight::Sphere { radius, radiance, .. },
+            SceneLight::CapEnv { radiance: sky, half_angle_deg, .. },
+        ] = wider.lights.as_deref().unwrap()
+        else {
+            panic!("{:?}", wider.lights);
+        };
+        // Intensity of a sphere from afar, and irradiance of a cone on a plane across: rounding of f32 alone.
+        assert!((radiance[0] * PI * radius * radius / 5.0 - 1.0).abs() < 1e-5);
+        assert!((sky[0] * PI * half_angle_deg.to_radians().sin().powi(2) / 2.0 - 1.0).abs() < 1e-5);
+    }
 }

@@ -131,6 +131,9 @@ fn paths(app: &mut App, ui: &mut egui::Ui) {
     if let Some(traced) = &app.traced {
         let state = if traced.done { "done" } else { "so far" };
         ui.label(format!("noise {:.1} %, {state} in {:.0} s", 100.0 * traced.noise, traced.seconds));
+        if traced.widened {
+            ui.label("Paths cannot meet a lamp without extent through a surface that refracts: points are spheres, suns are wide here.");
+        }
         if app.traced_scene != app.ordered.as_ref().map(|wish| wish.scene.clone()) {
             ui.label("the picture has changed since");
         }
