@@ -21,18 +21,25 @@ pub fn show(app: &mut App, ui: &mut egui::Ui) {
             }
         }
     });
-    let Medium { mut sigma_s_prime, mut sigma_a, mut ior } = medium;
+    let mut edited = medium;
     ui.label("reduced scattering, 1/mm");
-    coefficients(ui, &mut sigma_s_prime);
+    coefficients(ui, &mut edited.sigma_s_prime);
     ui.label("absorption, 1/mm");
-    coefficients(ui, &mut sigma_a);
-    ui.add(Slider::new(&mut ior, 1.0..=2.0).text("index of refraction"));
-    let edited = Medium { sigma_s_prime, sigma_a, ior };
+    coefficients(ui, &mut edited.sigma_a);
+    ui.add(Slider::new(&mut edited.ior, 1.0..=2.0).text("index of refraction"));
     if edited != medium {
-        let g = app.scene.material.map_or(0.0, |material| material.g);
-        app.scene.medium = None;
-        app.scene.material = Some(Material { sigma_s_prime, sigma_a, g, eta: ior });
+        edit(app, |medium| *medium = edited);
     }
+}
+
+/// Makes it a medium of its own, that no preset names.
+pub fn edit(app: &mut App, change: impl FnOnce(&mut Medium)) {
+    let mut medium = app.scene.medium().ok().flatten().unwrap_or_default();
+    change(&mut medium);
+    let Medium { sigma_s_prime, sigma_a, ior } = medium;
+    let g = app.scene.material.map_or(0.0, |material| material.g);
+    app.scene.medium = None;
+    app.scene.material = Some(Material { sigma_s_prime, sigma_a, g, eta: ior });
 }
 
 fn coefficients(ui: &mut egui::Ui, values: &mut [f32; 3]) {
