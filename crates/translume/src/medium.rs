@@ -62,6 +62,8 @@ presets! {
     WHOLEMILK "wholemilk": [2.55, 3.21, 3.77] [0.0011, 0.0024, 0.014] 1.3;
     /// Green jade, set by eye; not a measurement.
     JADE "jade": [0.9, 1.3, 0.95] [0.055, 0.0045, 0.03] 1.5;
+    /// White soap, set by eye; not a measurement.
+    SOAP "soap": [1.5, 1.45, 1.3] [0.0015, 0.0035, 0.012] 1.45;
     /// Honey-coloured wax, set by eye; not a measurement.
     WAX "wax": [1.6, 1.4, 1.0] [0.002, 0.012, 0.07] 1.4;
 }

@@ -115,7 +115,12 @@ pub fn beside(app: &mut App, ui: &mut egui::Ui) {
 
 fn paths(app: &mut App, ui: &mut egui::Ui) {
     let refracts = app.scene.medium().ok().flatten().unwrap_or_default().ior != 1.0;
-    if refracts && ui.button("Index of refraction 1 on both sides").on_hover_text("paths then meet lamps, and are quick").clicked() {
+    if refracts
+        && ui
+            .button("Index of refraction 1 on both sides")
+            .on_hover_text("paths then meet lamps, and are quick")
+            .clicked()
+    {
         super::medium::edit(app, |medium| medium.ior = 1.0);
     }
     ui.horizontal(|ui| {

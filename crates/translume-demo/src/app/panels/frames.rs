@@ -2,12 +2,15 @@
 
 use super::super::worker::Shown;
 use eframe::egui;
-use egui_plot::{Line, Plot, PlotPoints};
+use egui_plot::{Corner, Legend, Line, Plot, PlotPoints};
 use std::collections::VecDeque;
 use translume::{FrameTimings, Stage};
 
 /// Pictures that are remembered.
 const KEPT: usize = 120;
+
+/// Stages worth a line.
+const SLOW: [Stage; 3] = [Stage::Shadow, Stage::Gather, Stage::Scatter];
 
 /// The last pictures' times.
 #[derive(Default)]
@@ -32,17 +35,21 @@ impl Frames {
     }
 
     pub fn show(&self, ui: &mut egui::Ui) {
-        let points: PlotPoints<'_> =
-            self.took.iter().enumerate().map(|(k, ms)| [k as f64, f64::from(*ms)]).collect();
         Plot::new("frames")
-            .height(90.0)
+            .height(120.0)
             .include_y(0.0)
             .show_x(false)
             .allow_drag(false)
             .allow_zoom(false)
             .allow_scroll(false)
-            .y_axis_label("ms a picture")
-            .show(ui, |plot| plot.line(Line::new("picture", points)));
+            .y_axis_label("ms")
+            .legend(Legend::default().position(Corner::LeftTop).text_style(egui::TextStyle::Small))
+            .show(ui, |plot| {
+                for stage in SLOW {
+                    let times = self.timings.iter().map(|timings| timings.stage(stage).unwrap_or_default());
+                    plot.line(line(stage.name(), times.map(|time| 1e3 * time.as_secs_f64())));
+                }
+            });
         egui::Grid::new("stages").num_columns(3).striped(true).show(ui, |ui| {
             ui.strong("stage");
             ui.strong("median ms");
@@ -58,6 +65,10 @@ impl Frames {
             row(ui, "whole picture", || self.took.iter().copied());
         });
     }
+}
+
+fn line(name: &str, times: impl Iterator<Item = f64>) -> Line<'_> {
+    Line::new(name, times.enumerate().map(|(k, ms)| [k as f64, ms]).collect::<PlotPoints<'_>>())
 }
 
 fn row<I: Iterator<Item = f32>>(ui: &mut egui::Ui, name: &str, times: impl Fn() -> I) {

@@ -2,6 +2,7 @@
 
 use super::super::App;
 use super::super::playback::Play;
+use crate::model::Model;
 use crate::scene::{Round, SceneAnimation, Up};
 use eframe::egui;
 use egui::Slider;
@@ -56,7 +57,7 @@ fn shape(app: &mut App, ui: &mut egui::Ui) {
     }
 }
 
-fn motion(app: &mut App, ui: &mut egui::Ui, model: &crate::model::Model) {
+fn motion(app: &mut App, ui: &mut egui::Ui, model: &Model) {
     let play = Play::of(&app.scene, model);
     ui.horizontal(|ui| {
         let name = if app.playback.playing { "Pause" } else { "Play" };
@@ -88,23 +89,35 @@ fn motion(app: &mut App, ui: &mut egui::Ui, model: &crate::model::Model) {
         });
     }
     if play != Play::Morph || !app.playback.playing {
-        let targets = model.mesh.targets.len();
-        for k in 0..targets {
-            let mut weight = app.scene.morph.get(k).copied().unwrap_or(0.0);
-            let name = match model.mesh.targets[k].name.as_str() {
-                "" => format!("morph {k}"),
-                name => name.to_owned(),
-            };
-            if ui.add(Slider::new(&mut weight, 0.0..=1.0).text(name)).changed() {
-                app.scene.morph.resize(targets, 0.0);
-                app.scene.morph[k] = weight;
-                app.playback.phase = 0.0;
-            }
-        }
+        weights(app, ui, model, play);
     }
     let warp = &mut app.scene.warp;
     ui.add(Slider::new(&mut warp.twist_deg, -360.0..=360.0).text("twist °"));
     ui.add(Slider::new(&mut warp.bend_deg, -270.0..=270.0).text("bend °"));
     let reach = 0.05 * model.mesh.diagonal();
     ui.add(Slider::new(&mut warp.inflate, -reach..=reach).text("inflate"));
+}
+
+/// Of the morph targets at this moment.
+fn weights(app: &mut App, ui: &mut egui::Ui, model: &Model, play: Play) {
+    let targets = model.mesh.targets.len();
+    let mut now = app.scene.clone();
+    if now.morph.is_empty() {
+        now.morph.clone_from(&model.rig.weights);
+    }
+    now.morph.resize(targets, 0.0);
+    if play == Play::Morph {
+        app.playback.apply(play, &mut now, targets);
+    }
+    let mut changed = false;
+    for (k, weight) in now.morph.iter_mut().enumerate() {
+        let name = match model.mesh.targets[k].name.as_str() {
+            "" => format!("morph {k}"),
+            name => name.to_owned(),
+        };
+        changed |= ui.add(Slider::new(weight, 0.0..=1.0).text(name)).changed();
+    }
+    if changed {
+        (app.playback.phase, app.scene.morph) = (0.0, now.morph);
+    }
 }
