@@ -14,7 +14,10 @@ use translume_tests::{
 
 fn floor() -> Fixture {
     Fixture::new(&plane(100.0, 32), |d| {
-        d.medium = Medium { ior: 1.0, ..Medium::MARBLE };
+        d.medium = Medium {
+            boundary: translume_twin::boundary(fixture.body.profile(), fixture.body.medium()),
+            ..Medium::MARBLE
+        };
         d.shadows.resolution = 512;
     })
 }
@@ -81,7 +84,7 @@ fn twin(fixture: &Fixture, light: &Light) -> Vec<Source> {
         mm_per_unit: 1.0,
         surface: &Surface::new(positions, normals, triangles, false),
         lights: &[translume_tests::light(light, 1.0)],
-        ior: 1.0,
+        boundary: translume_twin::boundary(fixture.body.profile(), fixture.body.medium()),
         samples: 4,
         rays: 8,
     };

@@ -23,7 +23,7 @@ pub use ambient::ambient_transmittance;
 pub(crate) use receiver::Place;
 
 use crate::rgb::accumulate;
-use crate::{EnvironmentMap, Surface};
+use crate::{Boundary, EnvironmentMap, Surface};
 use ambient::Sky;
 use beam::{Lamp, Sun};
 use environment::Surroundings;
@@ -139,18 +139,18 @@ impl Light {
 pub(crate) struct Lighting<'a> {
     surface: &'a Surface,
     emitters: Vec<Box<dyn Emitter>>,
-    eta: f64,
+    boundary: Boundary,
     rays: u32,
 }
 
 impl<'a> Lighting<'a> {
     /// `rays`² directions for each light that has an extent and a shadow.
-    pub fn new(surface: &'a Surface, lights: &[Light], eta: f64, rays: u32) -> Self {
-        let emitters = lights.iter().map(|light| emitter(light, eta, rays)).collect();
-        Self { surface, emitters, eta, rays }
+    pub fn new(surface: &'a Surface, lights: &[Light], boundary: Boundary, rays: u32) -> Self {
+        let emitters = lights.iter().map(|light| emitter(light, &boundary, rays)).collect();
+        Self { surface, emitters, boundary, rays }
     }
 
-    /// Irradiance that entered: Σ L · F_t · cos, W/m².
+    /// Irradiance that entered: Σ L · F_t · g · cos, W/m².
     pub fn irradiance(&self, at: Place) -> [f64; 3] {
         let mut sum = [0.0; 3];
         if at.normal == DVec3::ZERO {
@@ -158,7 +158,7 @@ impl<'a> Lighting<'a> {
         }
         for (index, emitter) in self.emitters.iter().enumerate() {
             let strata = Strata::new(self.rays, at.position, index);
-            let receiver = Receiver { surface: self.surface, eta: self.eta, at, strata };
+            let receiver = Receiver { surface: self.surface, boundary: self.boundary, at, strata };
             accumulate(&mut sum, emitter.entering(&receiver), 1.0);
         }
         sum
@@ -171,7 +171,7 @@ trait Emitter: Send + Sync {
     fn entering(&self, receiver: &Receiver<'_>) -> [f64; 3];
 }
 
-fn emitter(light: &Light, eta: f64, rays: u32) -> Box<dyn Emitter> {
+fn emitter(light: &Light, boundary: &Boundary, rays: u32) -> Box<dyn Emitter> {
     match *light {
         Light::Directional { to_light, irradiance, shadow, region } => {
             Box::new(Sun { to_light: to_light.into(), irradiance, shadow, region })
@@ -184,7 +184,7 @@ fn emitter(light: &Light, eta: f64, rays: u32) -> Box<dyn Emitter> {
             Box::new(Lamp { position: position.into(), intensity, cone, shadow, region })
         }
         Light::Ambient { radiance, axis, half_angle, shadow } => {
-            Box::new(Sky::new(radiance, axis, half_angle, shadow, eta))
+            Box::new(Sky::new(radiance, axis, half_angle, shadow, boundary))
         }
         Light::Rectangle { center, half_right, half_up, radiance, shadow } => {
             Box::new(Rectangle::new(center, half_right, half_up, radiance, shadow))
@@ -257,8 +257,9 @@ mod tests {
             assert_ne!(at_places(&light, 1), at_places(&light, 3));
             let surface = half_roof(0.0, 1.0);
             let at = Place { position: DVec3::ZERO, normal: DVec3::Y, triangle: u32::MAX };
-            let twice = Lighting::new(&surface, &[light.clone(), light.clone()], 1.3, 3).irradiance(at)[0];
-            let once = Lighting::new(&surface, &[light], 1.3, 3).irradiance(at)[0];
+            let twice =
+                Lighting::new(&surface, &[light.clone(), light.clone()], 1.3.into(), 3).irradiance(at)[0];
+            let once = Lighting::new(&surface, &[light], 1.3.into(), 3).irradiance(at)[0];
             assert!(twice != 2.0 * once, "two lights must not share their noise");
         }
     }
