@@ -14,10 +14,7 @@ use translume_tests::{
 
 fn floor() -> Fixture {
     Fixture::new(&plane(100.0, 32), |d| {
-        d.medium = Medium {
-            boundary: translume_twin::boundary(fixture.body.profile(), fixture.body.medium()),
-            ..Medium::MARBLE
-        };
+        d.medium = Medium { ior: 1.0, ..Medium::MARBLE };
         d.shadows.resolution = 512;
     })
 }

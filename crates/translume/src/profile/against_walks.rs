@@ -102,23 +102,43 @@ fn half_spaces_follow_our_walks() {
     }
 }
 
-/// What returns of light that enters aslant, exactly and as the default profile has it, total times gain of entry. 2 % and 2.5 %: the noise of
-/// 30,000 walks, most where α' is small, and what the gain's form costs.
+/// A pencil of light along the normal, whose bounds others have set: 6 % and 2 %. Half of both is the walks' noise at α' = 0.5.
+#[test]
+fn the_default_is_that_of_a_searchlight() {
+    for ior in [1.0, 1.3] {
+        for walks in walks(Way::Normal, ior, 60_000) {
+            let off = |profile: &Profile| {
+                let [shape, total] = walks.errors(profile);
+                shape < 0.06 && total.abs() < 0.02
+            };
+            assert!(off(&Profile::default()), "{ior} {}", walks.albedo);
+            assert!(
+                walks.albedo > 0.9 || !off(&Profile::HalfSpace(Entry::Diffuse)),
+                "{ior} {}",
+                walks.albedo
+            );
+        }
+    }
+}
+
+/// What returns of light that enters aslant, exactly and as the default profile has it, total times gain of entry. 1.5 % and 2 %: the
+/// noise of 60,000 walks, most where α' is small, and what the gain's form costs. Measured 0.9 and 1.2 %.
 #[test]
 fn gains_of_entry_follow_our_walks() {
     let profile = Profile::default();
     // Nothing goes on at less than 0.64 at an index of 1.3.
     for (ior, cosines) in [(1.0, [0.2, 0.5, 0.8]), (1.3, [0.65, 0.75, 0.9])] {
         for cosine in cosines {
-            for walks in walks(Way::Aslant(cosine), ior, 30_000) {
+            for walks in walks(Way::Aslant(cosine), ior, 60_000) {
                 let exact = albedo::Albedo::new(walks.albedo, ior).along(cosine);
                 let at = |slant: f64| walks.radial(&profile).total() / (1.0 - slant * (1.0 - cosine));
                 let slant = profile.slant(&walks.medium())[0].into();
                 let [of_exact, of_gain, without] =
                     [exact, at(slant), at(0.0)].map(|total| (total / walks.total - 1.0).abs());
                 let what = format!("{ior} {cosine} {}: {of_exact} {of_gain} {without}", walks.albedo);
-                assert!(of_exact < 0.02 && of_gain < 0.025, "{what}");
-                assert!(without > of_gain + 0.002, "a gain must be noticed: {what}");
+                assert!(of_exact < 0.015 && of_gain < 0.02, "{what}");
+                let is_noise = at(slant) < 1.02 * at(0.0);
+                assert!(is_noise || without > of_gain, "no gain must be noticed: {what}");
             }
         }
     }
