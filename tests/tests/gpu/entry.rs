@@ -24,14 +24,14 @@ fn medium(ior: f32) -> Medium {
 
 /// What walks return that enter at a cosine to the normal outside; or from all sides.
 fn walked(way: Way, ior: f32) -> [f64; 3] {
-    let albedos = ALBEDOS.map(|a| f64::from(a)).to_vec();
+    let albedos = ALBEDOS.map(f64::from).to_vec();
     let setup = Setup { entry: way, ior: ior.into(), albedos, photons: 60_000, ..Setup::default() };
     let light = setup.finish();
     [0, 1, 2].map(|k| light.reflected[k].all.total.value)
 }
 
 /// Largest relative error of what the middle of the square returns of what entered.
-fn error(profile: Profile, ior: f32, light: Light, entered: f64, expected: [f64; 3]) -> f64 {
+fn error(profile: &Profile, ior: f32, light: Light, entered: f64, expected: [f64; 3]) -> f64 {
     let mut fixture = Fixture::new(&plane(SIDE, SIZE), |d| {
         (d.profile, d.medium) = (profile.clone(), medium(ior));
     });
@@ -40,9 +40,8 @@ fn error(profile: Profile, ior: f32, light: Light, entered: f64, expected: [f64;
     let sources = fixture.sources();
     let middle =
         (0..sources.len()).filter(|&k| sources[k].position.iter().all(|x| x.abs() < f64::from(TEXEL)));
-    let each = middle.flat_map(|texel| {
-        [0, 1, 2].map(|k| (f64::from(exitance[texel][k]) / entered / expected[k] - 1.0).abs())
-    });
+    let each =
+        middle.flat_map(|texel| [0, 1, 2].map(|k| (exitance[texel][k] / entered / expected[k] - 1.0).abs()));
     each.fold(0.0, f64::max)
 }
 
@@ -60,7 +59,7 @@ fn a_plane_returns_what_enters_at_an_angle() {
         let entered = outside * translume_reference::fresnel::transmittance(ior.into(), outside);
         let what = format!("entry: cosine {cosine}, η {ior}");
         let check = |profile| {
-            let error = error(profile, ior, Light::Directional(sun), entered, expected);
+            let error = error(&profile, ior, Light::Directional(sun), entered, expected);
             at_most(&what, error, BOUND)
         };
         holds(check(Profile::default()));
@@ -84,7 +83,11 @@ fn a_plane_returns_what_enters_from_a_sky() {
         constant.coefficients[0] = [(4.0 * PI).sqrt() as f32; 3];
         for light in [Light::Ambient(ambient), Light::Environment(constant)] {
             let check = |profile, expected| {
-                at_most(&format!("entry: sky, η {ior}"), error(profile, ior, light, entered, expected), BOUND)
+                at_most(
+                    &format!("entry: sky, η {ior}"),
+                    error(&profile, ior, light, entered, expected),
+                    BOUND,
+                )
             };
             holds(check(Profile::default(), expected));
             holds(check(DIFFUSE, expected));

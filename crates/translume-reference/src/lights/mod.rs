@@ -264,6 +264,51 @@ mod tests {
         }
     }
 
+    /// A constant sky by every kind of light that can be one, where channels gain differently.
+    #[test]
+    fn skies_gain_alike() {
+        let (radiance, axis, shadow) = ([1.0; 3], [0.0, 1.0, 0.0], false);
+        let map =
+            EnvironmentMap::new(256, 128, vec![radiance; 256 * 128]).expect("as many pixels as it says");
+        let ceiling = Light::Rectangle {
+            center: [0.0, 1.0, 0.0],
+            half_right: [1e4, 0.0, 0.0],
+            half_up: [0.0, 0.0, 1e4],
+            radiance,
+            shadow,
+        };
+        let skies = [
+            Light::Ambient { radiance, axis, half_angle: PI, shadow },
+            Light::Ambient { radiance, axis, half_angle: 0.5 * PI, shadow },
+            Light::Environment { map: Arc::new(map), shadow },
+            ceiling,
+        ];
+        let at = Place { position: DVec3::ZERO, normal: DVec3::Y, triangle: u32::MAX };
+        let light = |sky: &Light, slant: [f64; 3], ior: f64| {
+            let boundary = Boundary { ior, slant };
+            Lighting::new(&crate::testing::nothing(), std::slice::from_ref(sky), boundary, 1).irradiance(at)
+        };
+        let slant = [0.0, 0.3, 0.6];
+        for (sky, ior) in skies.iter().flat_map(|sky| [0.8, 1.0, 1.4].map(|ior| (sky, ior))) {
+            // By midpoints of the cosine's square, which the cosine in the integral is half the derivative of.
+            let mean = |k: usize| {
+                let steps = 100_000;
+                let share = |step: i32| {
+                    let boundary = Boundary { ior, slant };
+                    boundary.entering(((f64::from(step) + 0.5) / f64::from(steps)).sqrt())[k]
+                };
+                PI * (0..steps).map(share).sum::<f64>() / f64::from(steps)
+            };
+            let found = light(sky, slant, ior);
+            for k in 0..3 {
+                // 128 rows of a map against the jump at the critical angle: measured 7e-3 at η = 0.8.
+                assert!((found[k] / mean(k) - 1.0).abs() < 1e-2, "{ior} {k}: {found:?} {}", mean(k));
+            }
+            let even = light(sky, [0.0; 3], ior);
+            assert!((even[0] - found[0]).abs() < 1e-12 && found[2] > 1.05 * even[2], "{found:?} {even:?}");
+        }
+    }
+
     #[test]
     fn no_normal_takes_no_light() {
         for light in lights() {
