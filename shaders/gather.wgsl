@@ -81,8 +81,9 @@ fn direct(index: u32, receiver: Receiver) -> vec3f {
 
 // Fresnel's share, and how much of it counts: what enters aslant starts less deep, and more of it returns.
 fn entering(cosine: f32) -> vec3f {
-    let inside = sqrt(max(1.0 - (1.0 - cosine * cosine) / (lighting.eta * lighting.eta), 0.0));
-    return fresnel_transmittance(lighting.eta, cosine) / (1.0 - lighting.slant * (1.0 - inside));
+    let outside = clamp(cosine, 0.0, 1.0);
+    let lost = 1.0 - refracted_cosine(lighting.eta, outside);
+    return fresnel_transmittance(lighting.eta, outside) / (1.0 - lighting.slant * lost);
 }
 
 // All of an area light's irradiance in closed form; Fresnel's share and the shadow by its emitters.
