@@ -41,7 +41,7 @@ fn irradiance(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) grou
         let point = texel.points[k];
         if point.triangle != NOWHERE {
             let receiver = receiver_at(point.triangle, unpack2x16unorm(point.weights), area);
-            light += entering(receiver, seen);
+            light += arriving(receiver, seen);
             least = min(least, dot(receiver.face, normal));
             count += 1.0;
         }
@@ -58,7 +58,7 @@ fn clamped(w: vec2f) -> vec2f {
 }
 
 // seen: share of the shadowed sky
-fn entering(receiver: Receiver, seen: vec3f) -> vec3f {
+fn arriving(receiver: Receiver, seen: vec3f) -> vec3f {
     var light = sky(receiver, seen);
     for (var k = 0u; k < lighting.light_count; k++) {
         if AREA_LIGHTS && lighting.lights[k].kind >= RECTANGLE {
@@ -75,15 +75,22 @@ fn direct(index: u32, receiver: Receiver) -> vec3f {
     let arriving = arrival(index, receiver.position, receiver.half_width * receiver.half_width, receiver.normal);
     let cosine = dot(receiver.normal, arriving.to_light);
     if cosine <= 0.0 { return vec3f(0.0); }
-    let entered = fresnel_transmittance(lighting.eta, cosine) * cosine * region_fraction(index, receiver);
-    return arriving.strength * (entered * visibility(index, 0u, receiver, arriving.to_light));
+    let lit = cosine * region_fraction(index, receiver) * visibility(index, 0u, receiver, arriving.to_light);
+    return arriving.strength * entering(cosine) * lit;
+}
+
+// Fresnel's share, and how much of it counts: what enters aslant starts less deep, and more of it returns.
+fn entering(cosine: f32) -> vec3f {
+    let outside = clamp(cosine, 0.0, 1.0);
+    let lost = 1.0 - refracted_cosine(lighting.eta, outside);
+    return fresnel_transmittance(lighting.eta, outside) / (1.0 - lighting.slant * lost);
 }
 
 // All of an area light's irradiance in closed form; Fresnel's share and the shadow by its emitters.
 fn area_light(index: u32, receiver: Receiver) -> vec3f {
     let whole = area_irradiance(index, receiver.position, receiver.normal);
     if whole <= 0.0 { return vec3f(0.0); }
-    var entered = 0.0;
+    var entered = vec3f(0.0);
     var sum = 0.0;
     for (var k = 0u; k < lighting.lights[index].emitter_count; k++) {
         let emitter = lighting.emitters[lighting.lights[index].first_emitter + k].xyz;
@@ -93,13 +100,13 @@ fn area_light(index: u32, receiver: Receiver) -> vec3f {
         let weight = max(cosine, 0.0) * max(-dot(emitter_normal(index, emitter), to_light), 0.0)
             / max(dot(offset, offset), receiver.half_width * receiver.half_width);
         if weight > 0.0 {
-            entered += weight * fresnel_transmittance(lighting.eta, cosine) * visibility(index, k, receiver, to_light);
+            entered += entering(cosine) * (weight * visibility(index, k, receiver, to_light));
             sum += weight;
         }
     }
     // No emitter above the horizon, yet a sliver of the light: at grazing incidence nothing enters but at eta = 1.
     if sum == 0.0 { return vec3f(0.0); }
-    return lighting.lights[index].colour * (whole * entered / sum);
+    return lighting.lights[index].colour * entered * (whole / sum);
 }
 
 // Part of the quarter inside the box where the light enters.
@@ -133,20 +140,20 @@ fn sky(receiver: Receiver, seen: vec3f) -> vec3f {
 }
 
 // The share of a narrow cone's light that the body lets through, by directions of its own.
-fn cone_share(index: u32, receiver: Receiver) -> f32 {
-    var lit = 0.0;
-    var all = 0.0;
+fn cone_share(index: u32, receiver: Receiver) -> vec3f {
+    var lit = vec3f(0.0);
+    var all = vec3f(0.0);
     for (var k = 0u; k < lighting.ambients[index].emitter_count; k++) {
         let direction = lighting.emitters[lighting.ambients[index].first_emitter + k].xyz;
         let cosine = dot(receiver.normal, direction);
         if cosine > 0.0 {
-            let light = cosine * fresnel_transmittance(lighting.eta, cosine);
+            let light = cosine * entering(cosine);
             let view = lighting.views[lighting.ambients[index].first_view + k];
             lit += light * lit_share(view, receiver, direction, (lighting.filter_side + 1u) / 2u);
             all += light;
         }
     }
-    return select(lit / all, 1.0, all <= 0.0);
+    return select(lit / all, vec3f(1.0), all <= vec3f(0.0));
 }
 
 // The share of the sky's light that the body lets through, by the directions along which that is known.
@@ -156,7 +163,7 @@ fn sky_share(index: u32, normal: vec3f) -> vec3f {
     for (var k = 0u; k < lighting.direction_count; k++) {
         let cosine = dot(normal, lighting.sky[k].direction);
         if cosine > 0.0 {
-            let light = lighting.sky[k].radiance * (cosine * fresnel_transmittance(lighting.eta, cosine));
+            let light = lighting.sky[k].radiance * entering(cosine) * cosine;
             let word = visible[(k / 8u) * lighting.texel_count + index];
             lit += light * (f32((word >> (4u * (k % 8u))) & 15u) / 15.0);
             all += light;
@@ -168,7 +175,7 @@ fn sky_share(index: u32, normal: vec3f) -> vec3f {
 fn ambient(index: u32, normal: vec3f) -> vec3f {
     let x = clamp(dot(normal, lighting.ambients[index].axis) * 0.5 + 0.5, 0.0, 1.0) * AMBIENT_INTERVALS;
     let cell = min(u32(x), u32(AMBIENT_INTERVALS) - 1u);
-    let low = lighting.ambients[index].table[cell / 4u][cell % 4u];
-    let high = lighting.ambients[index].table[(cell + 1u) / 4u][(cell + 1u) % 4u];
+    let low = lighting.ambients[index].table[cell].rgb;
+    let high = lighting.ambients[index].table[cell + 1u].rgb;
     return lighting.ambients[index].radiance * mix(low, high, x - f32(cell));
 }

@@ -42,8 +42,8 @@ struct Ambient {
     axis: vec3f,
     // 1 where it is shadowed by what is known of the sky.
     shadow: u32,
-    // Irradiance inside the surface for unit radiance, over the cosine between normal and axis; 33 values.
-    table: array<vec4f, 9>,
+    // Irradiance inside the surface for unit radiance, over the cosine between normal and axis.
+    table: array<vec4f, 33>,
     // A narrow cone is shadowed along directions of its own, a view each.
     first_view: u32,
     first_emitter: u32,
@@ -84,6 +84,9 @@ struct Gather {
     filter_side: u32,
     // 0 where no light of the sky is shadowed.
     direction_count: u32,
+    // k of the gain of entry 1/(1 - k (1 - cosine inside)), per channel; 0 where all that enters counts alike.
+    slant: vec3f,
+    padding: u32,
     // Environments that are seen from everywhere, and those that the body shadows, as `environment_irradiance` takes them.
     open_sky: array<vec4f, 9>,
     shadowed_sky: array<vec4f, 9>,

@@ -106,7 +106,7 @@ impl Fixture {
             mm_per_unit: self.mm_per_unit,
             surface: &self.twin_surface(pose),
             lights,
-            ior: f64::from(self.body.medium().ior),
+            boundary: translume_twin::boundary(self.body.profile(), self.body.medium()),
             samples,
             rays,
         };

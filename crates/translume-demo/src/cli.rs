@@ -82,7 +82,7 @@ pub struct Render {
     /// Even out charts until every texel holds about the same area of the surface.
     #[arg(long)]
     pub even: bool,
-    /// Diffuse profile: half-space (random walks, tabulated; the default), half-space-searchlight (where all light enters along the normal), dipole (the paper's formula to the letter), dipole-normalised, dipole-oriented (its sources below and above the surface), better-dipole, photon-beam, normalised-diffusion,
+    /// Diffuse profile: half-space (random walks, tabulated, light by its angle; the default), half-space-diffuse (all light as from all sides), dipole (the paper's formula to the letter), dipole-normalised, dipole-oriented (its sources below and above the surface), better-dipole, photon-beam, normalised-diffusion,
     /// normalised-diffusion-searchlight; a dipole, the better one or photon-beam with -single adds light scattered once; or
     /// a table that `translume profile` wrote, by the name of its .json.
     #[arg(long, value_name = "NAME")]

@@ -12,7 +12,7 @@ use crate::lights::{Lighting, Place};
 use crate::profile::Profile;
 use crate::rgb::accumulate;
 use crate::surface::{interpolate, triangle_area};
-use crate::{Dipole, Light, Medium, Surface};
+use crate::{Boundary, Dipole, Light, Medium, Surface};
 
 /// Longest edge of a patch over its distance from the receiver, or over z_r if that is more. The rule below has degree 5;
 /// at 1/2 the plane and the sphere come out within 3e-5 (see the tests).
@@ -89,14 +89,14 @@ impl<'a> Converged<'a> {
 
 impl<'a, P: Profile> Converged<'a, P> {
     /// Casts light onto `surface` at steps of `target_edge` mm or less; shadow edges are as sharp as that, and light from an extent is linear in between. If the steps
-    /// would need more than a million patches they grow until they do not; [`edge`](Self::edge) tells. A profile of each channel; `ior`
-    /// says how light enters. Where a profile has no bound at r = 0, patches are cut to a hundredth of its decay length, or a tenth of their own, and no
+    /// would need more than a million patches they grow until they do not; [`edge`](Self::edge) tells. A profile of each channel; `boundary`,
+    /// or an index of refraction alone, says how light enters. Where a profile has no bound at r = 0, patches are cut to a hundredth of its decay length, or a tenth of their own, and no
     /// further, and what is nearer is as good as seven points.
     #[must_use]
     pub fn with_profiles(
         surface: &'a Surface,
         lights: &'a [Light],
-        ior: f64,
+        boundary: impl Into<Boundary>,
         profiles: [P; 3],
         target_edge: f64,
     ) -> Self {
@@ -104,7 +104,7 @@ impl<'a, P: Profile> Converged<'a, P> {
         // Halving edges leaves them between the target and half of it, so a patch holds at least ~1/8 of its square.
         let spare = (MAX_PATCHES - surface.triangles.len() as f64).max(1.0);
         let edge = target_edge.max((8.0 * area / spare).sqrt());
-        let lighting = Lighting::new(surface, lights, ior, RAYS);
+        let lighting = Lighting::new(surface, lights, boundary.into(), RAYS);
         let is_soft = lights.iter().any(Light::is_soft);
         let patches = (0..surface.triangles.len() as u32)
             .into_par_iter()

@@ -12,7 +12,7 @@ use translume_mesh::{Atlas, Texel};
 use crate::lights::{Lighting, Place};
 use crate::rgb::accumulate;
 use crate::surface::{interpolate, triangle_area};
-use crate::{Light, Surface};
+use crate::{Boundary, Light, Surface};
 
 /// A texel that gives and receives light: one entry of the diffusion source map.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -54,8 +54,8 @@ pub struct Gather<'a> {
     pub surface: &'a Surface,
     /// The lights.
     pub lights: &'a [Light],
-    /// Index of refraction, inside over outside.
-    pub ior: f64,
+    /// How light enters.
+    pub boundary: Boundary,
     /// Light is the mean over this number squared of points inside the texel's square, those on the surface; 0 and 1 take
     /// the texel's centre, moved to the edge of its triangle if it lies outside.
     pub samples: u32,
@@ -69,7 +69,7 @@ impl Gather<'_> {
     /// All texels, in the atlas's order.
     #[must_use]
     pub fn run(&self) -> Vec<Source> {
-        let lighting = Lighting::new(self.surface, self.lights, self.ior, self.rays);
+        let lighting = Lighting::new(self.surface, self.lights, self.boundary, self.rays);
         let grid = (self.samples > 1).then(|| TriangleGrid::new(self.atlas));
         self.atlas.texels.par_iter().map(|texel| self.source(texel, &lighting, grid.as_ref())).collect()
     }
@@ -222,8 +222,8 @@ mod tests {
     }
 
     fn run(surface: &Surface, atlas: &Atlas, lights: &[Light], ior: f64, samples: u32) -> Vec<Source> {
-        Gather { atlas, rest: &surface.positions, mm_per_unit: 1.0, surface, lights, ior, samples, rays: 1 }
-            .run()
+        let (rest, boundary) = (&surface.positions, ior.into());
+        Gather { atlas, rest, mm_per_unit: 1.0, surface, lights, boundary, samples, rays: 1 }.run()
     }
 
     #[test]
@@ -328,7 +328,7 @@ mod tests {
             mm_per_unit: 1.0,
             surface: &surface,
             lights: &[],
-            ior: 1.3,
+            boundary: 1.3.into(),
             samples: 1,
             rays: 1,
         };

@@ -2,7 +2,7 @@
 //!
 //! | module | what it computes |
 //! | --- | --- |
-//! | [`medium`], [`fresnel`], [`dipole`], [`profile`] | the optics: coefficients, exact Fresnel terms, diffuse reflectance profiles |
+//! | [`medium`], [`fresnel`], [`boundary`], [`dipole`], [`profile`] | the optics: coefficients, exact Fresnel terms, what enters, diffuse reflectance profiles |
 //! | [`half_space`] | Monte Carlo of a half-space or slab, which profiles approximate |
 //! | [`surface`], [`lights`], [`environment`] | the scene: triangles with ray queries, and what illuminates them |
 //! | [`deform`] | positions and normals of a morphed pose |
@@ -17,6 +17,7 @@
 //! The stages carry the names of the GPU stages they judge and share no code with them. Lengths are millimetres,
 //! colours linear RGB, angles radians.
 
+pub mod boundary;
 pub mod cluster;
 pub mod composite;
 pub mod converged;
@@ -39,6 +40,7 @@ pub mod surface;
 #[cfg(test)]
 mod testing;
 
+pub use boundary::Boundary;
 pub use dipole::Dipole;
 pub use environment::EnvironmentMap;
 pub use lights::Light;

@@ -89,7 +89,7 @@ pub(crate) fn entering(
     position: [f64; 3],
     normal: [f64; 3],
 ) -> [f64; 3] {
-    let lighting = Lighting::new(surface, std::slice::from_ref(light), eta, rays);
+    let lighting = Lighting::new(surface, std::slice::from_ref(light), eta.into(), rays);
     lighting.irradiance(Place { position: position.into(), normal: normal.into(), triangle: u32::MAX })
 }
 

@@ -29,7 +29,7 @@ fn sphere_in_the_sun() {
         mm_per_unit: 1.0,
         surface: &surface,
         lights: &lights,
-        ior: SKIN.ior,
+        boundary: SKIN.ior.into(),
         samples: 2,
         rays: 1,
     }

@@ -7,5 +7,5 @@ mod profile;
 mod surface;
 
 pub use light::{light, map};
-pub use profile::{dipoles, medium, profiles};
+pub use profile::{boundary, dipoles, medium, profiles};
 pub use surface::surface;

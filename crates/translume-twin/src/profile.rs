@@ -1,8 +1,8 @@
 //! Media and profiles.
 
 use translume::{BurleyFit, Diffusion, Layer, Medium, Profile};
-use translume_reference::Dipole;
 use translume_reference::profile::{self, Channel, Entry, Numeric, Profile as _, Sheet};
+use translume_reference::{Boundary, Dipole};
 
 /// The same coefficients.
 #[must_use]
@@ -12,6 +12,12 @@ pub fn medium(medium: &Medium) -> translume_reference::Medium {
         sigma_a: medium.sigma_a.map(f64::from),
         ior: medium.ior.into(),
     }
+}
+
+/// How light enters: with the profile's own gain, which random walks judge.
+#[must_use]
+pub fn boundary(profile: &Profile, medium: &Medium) -> Boundary {
+    Boundary { ior: medium.ior.into(), slant: profile.slant(medium).map(f64::from) }
 }
 
 /// The dipole of each channel.

@@ -6,6 +6,7 @@ mod kernel;
 mod settings;
 
 use self::kernel::{check_kernel, check_method};
+use crate::boundary::Boundary;
 use crate::bounds::PoseBounds;
 use crate::buffers::{Buffers, Extent};
 use crate::descriptor::BodyDescriptor;
@@ -73,6 +74,7 @@ pub struct Body {
     model: Mat4,
     /// [`Profile::exit_scale`] of profile and medium: an integral too long for every picture.
     pub(crate) exit_scale: f32,
+    boundary: Boundary,
     pose: Pose,
     /// Where the next frame's pose is made, so that a refused one leaves no trace and none allocates.
     next_pose: Pose,
@@ -163,6 +165,7 @@ impl Body {
             pattern: None,
             model: Mat4::IDENTITY,
             exit_scale: profile.exit_scale(medium.ior),
+            boundary: Boundary::new(profile, &medium),
             pose: Pose::rest(&extent),
             next_pose: Pose::rest(&extent),
             lights: Vec::new(),
@@ -216,21 +219,19 @@ impl Body {
 
         let moved = self.never_prepared || model != self.model || self.next_pose != self.pose;
         let shaded = moved || frame.casters != self.casters || self.shadows_stale;
-        let relit = shaded
-            || self.surface_stale
-            || lights != self.lights
-            || self.host_irradiance.is_some() && host_irradiance.is_none();
+        let relit =
+            shaded || lights != self.lights || self.host_irradiance.is_some() && host_irradiance.is_none();
         let to_mm = Mat4::from_scale(Vec3::splat(self.mm_per_unit)) * model;
         let winding = to_mm.determinant().signum();
         let corners =
             self.bounds.posed(&self.next_pose).corners().map(|corner| to_mm.transform_point3(corner));
         frame::validate_corners(&corners)?;
         let subject = Subject { corners: &corners, casters: casters.as_ref() };
-        if relit {
+        if relit || self.surface_stale {
             let body = GatherBody {
                 texels: self.extent.texels,
                 flat_normals: self.flat_normals,
-                eta: self.medium.ior,
+                boundary: self.boundary,
                 winding,
                 mm_per_unit: self.mm_per_unit,
                 subject: &subject,
@@ -242,7 +243,8 @@ impl Body {
             self.depth_maps.write_views(queue, &gathering.views);
             queue.write_buffer(&self.buffers.gather_uniform, 0, bytemuck::bytes_of(&*gathering.layout));
             (self.views, self.owners) = (gathering.views, gathering.owners);
-            self.pending.insert(StageSet::from_stage_on(Stage::Shadow));
+            let first = if relit { Stage::Shadow } else { Stage::Gather };
+            self.pending.insert(StageSet::from_stage_on(first));
         }
         if moved {
             std::mem::swap(&mut self.pose, &mut self.next_pose);

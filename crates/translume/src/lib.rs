@@ -33,6 +33,7 @@ pub use wgpu;
 
 mod area_light;
 mod body;
+mod boundary;
 mod bounds;
 mod buffers;
 mod camera;

@@ -1,6 +1,7 @@
 //! Lights, in the host's world units.
 
-use crate::{EnvironmentLight, Error, RectangleLight, SphereLight, fresnel};
+use crate::boundary::Boundary;
+use crate::{EnvironmentLight, Error, RectangleLight, SphereLight};
 use glam::Vec3;
 
 /// A source of light. Positions are in world units; colours are linear RGB.
@@ -206,32 +207,35 @@ impl Light {
     }
 }
 
-/// Irradiance inside the surface from a cone of unit radiance, ∫ F_t·cos dω over cone ∩ hemisphere, as a table over the cosine
-/// between the surface's normal and the cone's axis from −1 to 1.
-pub(crate) fn ambient_table<const N: usize>(half_angle: f32, eta: f32) -> [f32; N] {
-    let (half_angle, eta) = (f64::from(half_angle).clamp(0.0, std::f64::consts::PI), f64::from(eta));
+/// Irradiance inside the surface from a cone of unit radiance, ∫ F_t·g·cos dω over cone ∩ hemisphere with g the gain of entry, RGB and 0,
+/// as a table over the cosine between the surface's normal and the cone's axis from −1 to 1.
+pub(crate) fn ambient_table<const N: usize>(half_angle: f32, boundary: &Boundary) -> [[f32; 4]; N] {
+    let half_angle = f64::from(half_angle).clamp(0.0, std::f64::consts::PI);
+    let entry = |[r, g, b]: [f64; 3]| [r as f32, g as f32, b as f32, 0.0];
     if half_angle >= std::f64::consts::PI {
-        return [(std::f64::consts::PI * fresnel::hemispherical_transmittance(eta)) as f32; N];
+        return [entry(boundary.lobe()[0]); N];
     }
-    std::array::from_fn(|k| cone_irradiance(2.0 * k as f64 / (N - 1) as f64 - 1.0, half_angle, eta) as f32)
+    let cosine = |k: usize| 2.0 * k as f64 / (N - 1) as f64 - 1.0;
+    std::array::from_fn(|k| entry(cone_irradiance(cosine(k), half_angle, boundary)))
 }
 
 /// Rings around the normal: on the ring at angle θ the cone covers an arc known in closed form. Only rings the cone reaches count.
-fn cone_irradiance(cosine: f64, half_angle: f64, eta: f64) -> f64 {
+fn cone_irradiance(cosine: f64, half_angle: f64, boundary: &Boundary) -> [f64; 3] {
     const RINGS: usize = 512;
     let sine = (1.0 - cosine * cosine).max(0.0).sqrt();
     let tilt = cosine.clamp(-1.0, 1.0).acos();
     let first = (tilt - half_angle).max(0.0);
     let last = (tilt + half_angle).min(std::f64::consts::FRAC_PI_2);
     let step = (last - first).max(0.0) / RINGS as f64;
-    (0..RINGS)
-        .map(|k| {
-            let (ring_sin, ring_cos) = (first + (k as f64 + 0.5) * step).sin_cos();
-            let edge = (half_angle.cos() - ring_cos * cosine) / (ring_sin * sine).max(1e-12);
-            let arc = 2.0 * edge.clamp(-1.0, 1.0).acos();
-            fresnel::transmittance(eta, ring_cos) * ring_cos * ring_sin * arc * step
-        })
-        .sum()
+    let mut sum = [0.0; 3];
+    for k in 0..RINGS {
+        let (ring_sin, ring_cos) = (first + (k as f64 + 0.5) * step).sin_cos();
+        let edge = (half_angle.cos() - ring_cos * cosine) / (ring_sin * sine).max(1e-12);
+        let arc = 2.0 * edge.clamp(-1.0, 1.0).acos();
+        let entering = boundary.entering(ring_cos);
+        sum = std::array::from_fn(|c| sum[c] + entering[c] * ring_cos * ring_sin * arc * step);
+    }
+    sum
 }
 
 #[cfg(test)]
@@ -239,12 +243,17 @@ mod tests {
     use super::*;
     use std::f64::consts::{FRAC_PI_2, PI};
 
+    /// Without a gain.
+    fn cone(cosine: f64, half_angle: f64, eta: f32) -> f64 {
+        cone_irradiance(cosine, half_angle, &Boundary { eta, slant: [0.0; 3] })[0]
+    }
+
     #[test]
     fn half_a_sky_has_a_closed_form() {
         // A hemisphere of sky tilted by γ gives π(1 + cos γ)/2 at eta = 1. 0.1 %: 512 rings against a kink.
         for cosine in [-1.0, -0.3, 0.0, 0.5, 1.0] {
             let expected = PI * (1.0 + cosine) / 2.0;
-            assert!((cone_irradiance(cosine, FRAC_PI_2, 1.0) - expected).abs() < 1e-3 * PI, "{cosine}");
+            assert!((cone(cosine, FRAC_PI_2, 1.0) - expected).abs() < 1e-3 * PI, "{cosine}");
         }
     }
 
@@ -253,8 +262,8 @@ mod tests {
         let half_angle: f64 = 0.1;
         let solid_angle = 2.0 * PI * (1.0 - half_angle.cos());
         for (cosine, eta) in [(1.0, 1.0), (0.6, 1.0), (0.6, 1.5)] {
-            let expected = solid_angle * cosine * fresnel::transmittance(eta, cosine);
-            let found = cone_irradiance(cosine, half_angle, eta);
+            let expected = solid_angle * cosine * crate::fresnel::transmittance(eta.into(), cosine);
+            let found = cone(cosine, half_angle, eta);
             assert!((found / expected - 1.0).abs() < 0.02, "{cosine} {eta}: {found} {expected}");
         }
     }

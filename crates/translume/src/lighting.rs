@@ -1,5 +1,6 @@
 //! The lights of a frame, translated into what WGSL reads.
 
+use crate::boundary::Boundary;
 use crate::layout::{
     AmbientLayout, GatherLayout, LightLayout, MAX_EMITTERS, MAX_VIEWS, NO_SHADOW, ShadowViewLayout, SkyLayout,
 };
@@ -12,7 +13,7 @@ use glam::Vec3;
 pub(crate) struct GatherBody<'a> {
     pub texels: u32,
     pub flat_normals: bool,
-    pub eta: f32,
+    pub boundary: Boundary,
     pub winding: f32,
     pub mm_per_unit: f32,
     pub subject: &'a Subject<'a>,
@@ -58,7 +59,8 @@ pub(crate) fn gather(lights: &[Light], body: &GatherBody<'_>) -> Result<Gatherin
     let mut layout: Box<GatherLayout> = bytemuck::zeroed_box();
     layout.texel_count = body.texels;
     layout.flat_normals = u32::from(body.flat_normals);
-    layout.eta = body.eta;
+    layout.eta = body.boundary.eta;
+    layout.slant = body.boundary.slant;
     layout.winding = body.winding;
     layout.filter_side = body.shadows.filter;
     let (mut views, mut owners, mut emitters) = (Vec::new(), Vec::new(), 0);
@@ -71,7 +73,7 @@ pub(crate) fn gather(lights: &[Light], body: &GatherBody<'_>) -> Result<Gatherin
         match light {
             Light::Ambient(ambient) => {
                 let slot = &mut layout.ambients[layout.ambient_count as usize];
-                *slot = ambient_layout(ambient, body.eta, &own, views.len(), emitters);
+                *slot = ambient_layout(ambient, &body.boundary, &own, views.len(), emitters);
                 layout.ambient_count += 1;
             }
             Light::Environment(_) => {}
@@ -179,23 +181,18 @@ fn light_layout(
 
 fn ambient_layout(
     ambient: &AmbientLight,
-    eta: f32,
+    boundary: &Boundary,
     own: &LightViews,
     first_view: usize,
     first_emitter: usize,
 ) -> AmbientLayout {
-    let values: [f32; 33] = light::ambient_table(ambient.half_angle, eta);
-    let mut table = [[0.0; 4]; 9];
-    for (k, value) in values.into_iter().enumerate() {
-        table[k / 4][k % 4] = value;
-    }
     let axis = Vec3::from(ambient.axis).normalize_or(Vec3::Y).to_array();
     AmbientLayout {
         radiance: ambient.radiance,
         cone_cosine: ambient.half_angle.cos(),
         axis,
         shadow: u32::from(ambient.shadow && own.emitters.is_empty()),
-        table,
+        table: light::ambient_table(ambient.half_angle, boundary),
         first_view: first_view as u32,
         first_emitter: first_emitter as u32,
         emitter_count: own.emitters.len() as u32,
@@ -209,7 +206,9 @@ fn sky_layout(layout: &mut GatherLayout, lights: &[Light], body: &GatherBody<'_>
     for light in lights {
         if let Light::Environment(environment) = light {
             let sum = if environment.shadow { &mut layout.shadowed_sky } else { &mut layout.open_sky };
-            for (sum, term) in sum.iter_mut().flatten().zip(environment.through(body.eta).as_flattened()) {
+            for (sum, term) in
+                sum.iter_mut().flatten().zip(environment.through(&body.boundary).as_flattened())
+            {
                 *sum += term;
             }
         }

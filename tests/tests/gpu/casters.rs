@@ -81,7 +81,7 @@ fn twin(fixture: &Fixture, light: &Light) -> Vec<Source> {
         mm_per_unit: 1.0,
         surface: &Surface::new(positions, normals, triangles, false),
         lights: &[translume_tests::light(light, 1.0)],
-        ior: 1.0,
+        boundary: translume_twin::boundary(fixture.body.profile(), fixture.body.medium()),
         samples: 4,
         rays: 8,
     };

@@ -11,6 +11,7 @@ mod cluster;
 mod composite;
 mod deform;
 mod dual;
+mod entry;
 mod errors;
 mod evaluate;
 mod furnace;

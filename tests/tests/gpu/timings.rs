@@ -167,7 +167,12 @@ fn stages_that_ran_are_timed_and_no_others() {
     assert_eq!(melting.stages(STILL, &[lamp(5.0, false)]), every[2..]);
     melting.body.set_medium(Medium::WAX).unwrap();
     melting.stages(STILL, &[lamp(5.0, false)]);
-    melting.body.set_medium(Medium { ior: Medium::WAX.ior, ..Medium::KETCHUP }).unwrap();
+    let ketchup = Medium { ior: Medium::WAX.ior, ..Medium::KETCHUP };
+    melting.body.set_medium(ketchup).unwrap();
+    // Another albedo, another gain of entry.
+    assert_eq!(melting.stages(STILL, &[lamp(5.0, false)]), every[2..]);
+    let [sigma_s_prime, sigma_a] = [ketchup.sigma_s_prime, ketchup.sigma_a].map(|c| c.map(|x| 2.0 * x));
+    melting.body.set_medium(Medium { sigma_s_prime, sigma_a, ..ketchup }).unwrap();
     assert_eq!(melting.stages(STILL, &[lamp(5.0, false)]), every[4..]);
     let sky = Light::Ambient(AmbientLight { shadow: true, ..Default::default() });
     assert_eq!(melting.stages(STILL, &[sky]), [Visibility, Gather, Cluster, Scatter, Resolve]);

@@ -6,8 +6,8 @@ use crate::error::Error;
 use crate::gpu::Gpu;
 use std::time::{Duration, Instant};
 use translume::{
-    Body, BodyDescriptor, Casters, Deformation, Frame, Light, Lighting, Medium, Region, ShadowOptions, Stage,
-    Translume, readback, wgpu,
+    Body, BodyDescriptor, Casters, Deformation, Entry, Frame, Light, Lighting, Medium, Profile, Region,
+    ShadowOptions, Stage, Translume, readback, wgpu,
 };
 
 /// After so long no repetition begins: what is slow needs few.
@@ -38,6 +38,8 @@ impl<'a> Bench<'a> {
         let descriptor = BodyDescriptor {
             medium: Medium { ior: IOR, ..Medium::default() },
             mm_per_unit: subject.mm_per_unit,
+            // Light alone is judged: all that enters counts alike.
+            profile: Profile::HalfSpace(Entry::Diffuse),
             ..BodyDescriptor::new(&subject.model.mesh, &subject.atlas)
         };
         let body = translume.create_body(&gpu.device, &descriptor)?;

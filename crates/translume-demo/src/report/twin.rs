@@ -93,7 +93,7 @@ impl Twin {
             mm_per_unit: self.mm_per_unit,
             surface: &self.surface,
             lights,
-            ior: IOR.into(),
+            boundary: f64::from(IOR).into(),
             samples,
             rays,
         };

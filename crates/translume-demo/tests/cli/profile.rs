@@ -44,7 +44,7 @@ fn a_table_of_walks_is_made_once_and_renders_as_the_half_space() {
     assert_eq!(std::fs::read(&table).unwrap(), before);
 
     let from_table = brightness(&desk, table.to_str().unwrap());
-    let shipped = brightness(&desk, "half-space");
+    let shipped = brightness(&desk, "half-space-diffuse");
     // 20,000 walks know their total to 0.3 %.
     assert!((from_table / shipped - 1.0).abs() < 0.01, "{from_table} {shipped}");
     let dipole = brightness(&desk, "dipole-normalised");

@@ -20,10 +20,12 @@ use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 /// From where light goes when it has just entered.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Entry {
     /// Straight down.
     Normal,
+    /// At this cosine to the normal *inside* the medium, above 0 to 1.
+    Aslant(f64),
     /// All ways, by the cosine *inside* the medium, whatever the index.
     Cosine,
     /// As the same radiance from all sides enters: by the cosine outside, refracted, weighted with Fresnel's share. That of `Cosine` at

@@ -34,6 +34,7 @@ pub(super) fn batch(setup: &Setup, batch: u64, photons: u64) -> Tally {
 fn entry_cosine(setup: &Setup, dice: &mut Dice) -> f64 {
     match setup.entry {
         Entry::Normal => 1.0,
+        Entry::Aslant(cosine) => cosine,
         Entry::Cosine => dice.roll().sqrt(),
         // Rejection: the share that enters is what Fresnel's equations let in.
         Entry::Diffuse => loop {

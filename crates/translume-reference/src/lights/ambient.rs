@@ -6,9 +6,10 @@ use glam::DVec3;
 
 use super::strata::{cone, hemisphere};
 use super::{Emitter, Ray, Receiver};
-use crate::fresnel::{hemispherical_transmittance, transmittance};
+use crate::Boundary;
+use crate::fresnel::transmittance;
 use crate::quadrature::integrate_panels;
-use crate::rgb::scale;
+use crate::rgb::product;
 
 /// A cone of the sky.
 pub(super) struct Sky {
@@ -17,12 +18,18 @@ pub(super) struct Sky {
     half_angle: f64,
     shadow: bool,
     /// What the whole sky lets in, sr.
-    whole: f64,
+    whole: [f64; 3],
 }
 
 impl Sky {
-    pub fn new(radiance: [f64; 3], axis: [f64; 3], half_angle: f64, shadow: bool, eta: f64) -> Self {
-        let whole = PI * hemispherical_transmittance(eta);
+    pub fn new(
+        radiance: [f64; 3],
+        axis: [f64; 3],
+        half_angle: f64,
+        shadow: bool,
+        boundary: &Boundary,
+    ) -> Self {
+        let whole = boundary.whole_sky();
         Self { radiance, axis: axis.into(), half_angle, shadow, whole }
     }
 
@@ -30,13 +37,13 @@ impl Sky {
         // The cosine is in the density over the hemisphere, and in the weight over a cone.
         let (direction, weight) = if self.half_angle >= PI {
             let direction = hemisphere(receiver.at.normal, point);
-            (direction, transmittance(receiver.eta, receiver.at.normal.dot(direction)))
+            (direction, receiver.boundary.entering(receiver.at.normal.dot(direction)))
         } else {
             let opening = 2.0 * (0.5 * self.half_angle).sin().powi(2);
             let (direction, _) = cone(self.axis, opening, point);
             (direction, receiver.share(direction))
         };
-        Ray { direction, distance: f64::INFINITY, weight: [weight; 3] }
+        Ray { direction, distance: f64::INFINITY, weight }
     }
 }
 
@@ -45,11 +52,11 @@ impl Emitter for Sky {
         let open = if self.half_angle >= PI {
             self.whole
         } else {
-            ambient_transmittance(receiver.eta, receiver.at.normal.dot(self.axis), self.half_angle)
+            cone_transmittance(&receiver.boundary, receiver.at.normal.dot(self.axis), self.half_angle)
         };
         let rays = receiver.strata.points().map(|point| self.ray(receiver, point));
-        let visible = if self.shadow { receiver.visible(rays)[0] } else { 1.0 };
-        scale(self.radiance, open * visible)
+        let visible = if self.shadow { receiver.visible(rays) } else { [1.0; 3] };
+        product(self.radiance, product(open, visible))
     }
 }
 
@@ -59,6 +66,15 @@ impl Emitter for Sky {
 /// For eta = 1: π sin²(half_angle) cos_axis where the whole cone is above the horizon, π for the whole sky.
 #[must_use]
 pub fn ambient_transmittance(eta: f64, cos_axis: f64, half_angle: f64) -> f64 {
+    over_cone(eta, &|cos| transmittance(eta, cos), cos_axis, half_angle)
+}
+
+/// The same of each channel with the gain of entry.
+pub(super) fn cone_transmittance(boundary: &Boundary, cos_axis: f64, half_angle: f64) -> [f64; 3] {
+    boundary.each(|entering| over_cone(boundary.ior, entering, cos_axis, half_angle))
+}
+
+fn over_cone(eta: f64, entering: &dyn Fn(f64) -> f64, cos_axis: f64, half_angle: f64) -> f64 {
     let tilt = cos_axis.clamp(-1.0, 1.0).acos();
     let sin_tilt = tilt.sin();
     let half_angle = half_angle.clamp(0.0, PI);
@@ -85,7 +101,7 @@ pub fn ambient_transmittance(eta: f64, cos_axis: f64, half_angle: f64) -> f64 {
     breaks.sort_by(f64::total_cmp);
     let ring = |polar: f64| {
         let cos = polar.cos();
-        transmittance(eta, cos) * cos * polar.sin() * azimuth(polar)
+        entering(cos) * cos * polar.sin() * azimuth(polar)
     };
     integrate_panels(ring, &breaks, 1e-9)
 }
@@ -93,6 +109,7 @@ pub fn ambient_transmittance(eta: f64, cos_axis: f64, half_angle: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::fresnel::hemispherical_transmittance;
     use crate::lights::{Lighting, Place};
     use crate::testing::{assert_rel, entering, nothing, octasphere, ring, wall};
     use crate::{Light, Surface};
@@ -154,7 +171,7 @@ mod tests {
             normal: out * tilt.cos() + out.any_orthonormal_vector() * tilt.sin(),
             triangle: 7,
         };
-        let light = |tilt: f64| Lighting::new(&ball, &light, 1.0, 32).irradiance(place(tilt))[0] / PI;
+        let light = |tilt: f64| Lighting::new(&ball, &light, 1.0.into(), 32).irradiance(place(tilt))[0] / PI;
         assert_eq!(light(0.0), 1.0, "a convex body does not shade itself");
         for tilt in [0.3f64, 0.8] {
             // An edge through 32 of 1024 cells: measured 0.5 % at most.

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::{Emitter, Receiver, Region};
-use crate::rgb::scale;
+use crate::rgb::{product, scale};
 
 /// Parallel light.
 pub(super) struct Sun {
@@ -26,10 +26,10 @@ pub(super) struct Lamp {
 impl Emitter for Sun {
     fn entering(&self, receiver: &Receiver<'_>) -> [f64; 3] {
         let share = receiver.share(self.to_light);
-        let dark = share == 0.0
+        let dark = share == [0.0; 3]
             || outside(self.region, receiver)
             || (self.shadow && receiver.blocked(self.to_light, f64::INFINITY));
-        if dark { [0.0; 3] } else { scale(self.irradiance, share) }
+        if dark { [0.0; 3] } else { product(self.irradiance, share) }
     }
 }
 
@@ -41,11 +41,12 @@ impl Emitter for Lamp {
             return [0.0; 3];
         }
         let to_light = offset / distance;
-        let share = receiver.share(to_light) * self.cone.map_or(1.0, |cone| falloff(cone, -offset));
-        let dark = share == 0.0
+        let strength = self.cone.map_or(1.0, |cone| falloff(cone, -offset)) / (distance * distance);
+        let share = scale(receiver.share(to_light), strength);
+        let dark = share == [0.0; 3]
             || outside(self.region, receiver)
             || (self.shadow && receiver.blocked(to_light, distance));
-        if dark { [0.0; 3] } else { scale(self.intensity, share / (distance * distance)) }
+        if dark { [0.0; 3] } else { product(self.intensity, share) }
     }
 }
 

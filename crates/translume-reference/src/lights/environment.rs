@@ -12,7 +12,7 @@ use super::density::Density;
 use super::strata::hemisphere;
 use super::{Emitter, Ray, Receiver};
 use crate::EnvironmentMap;
-use crate::rgb::{accumulate, mean, scale};
+use crate::rgb::{accumulate, mean, product, scale};
 
 /// Pixels merge until this many rows are left, twice as many columns: blocks of 1.4°. Measured on maps of tinted noise the
 /// sum is within 1e-4 (see the tests), on three unrelated channels of four decades within 2e-4.
@@ -61,7 +61,7 @@ impl Surroundings {
     fn open(&self, receiver: &Receiver<'_>) -> [f64; 3] {
         let mut sum = [0.0; 3];
         for patch in &self.merged {
-            accumulate(&mut sum, patch.light, receiver.share(patch.direction));
+            accumulate(&mut sum, product(patch.light, receiver.share(patch.direction)), 1.0);
         }
         sum
     }
@@ -78,9 +78,9 @@ impl Surroundings {
             let light = self.rest.radiance(direction.to_array());
             let cosine = normal.dot(direction).max(0.0) * FRAC_1_PI;
             let density = (1.0 - share) * cosine + share * mean(light) / power;
-            let weight = receiver.share(direction);
-            let weight = if weight > 0.0 { weight / density } else { 0.0 };
-            Ray { direction, distance: f64::INFINITY, weight: scale(light, weight) }
+            let share = receiver.share(direction);
+            let weight = if share == [0.0; 3] { share } else { scale(product(light, share), 1.0 / density) };
+            Ray { direction, distance: f64::INFINITY, weight }
         })
     }
 }
@@ -93,8 +93,8 @@ impl Emitter for Surroundings {
         let mut sum = std::array::from_fn(|k| open[k] * visible[k]);
         for sun in &self.suns {
             let share = receiver.share(sun.direction);
-            if share > 0.0 && !(self.shadow && receiver.blocked(sun.direction, f64::INFINITY)) {
-                accumulate(&mut sum, sun.light, share);
+            if share != [0.0; 3] && !(self.shadow && receiver.blocked(sun.direction, f64::INFINITY)) {
+                accumulate(&mut sum, product(sun.light, share), 1.0);
             }
         }
         sum

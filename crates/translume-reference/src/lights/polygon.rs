@@ -6,15 +6,21 @@
 
 use glam::DVec3;
 
-use crate::fresnel::transmittance;
+use crate::Boundary;
 use crate::quadrature::{integrate, integrate_panels};
 
-/// ∫ F_t(eta, cos) cos dω over the part of a polygon above the horizon of `normal`, sr. Corners are relative to the
-/// receiver, in either order.
-pub(super) fn polygon_transmittance(eta: f64, normal: DVec3, corners: &[DVec3]) -> f64 {
+/// ∫ F_t g cos dω over the part of a polygon above the horizon of `normal`, g the gain of entry, sr. Corners are relative to
+/// the receiver, in either order.
+pub(super) fn polygon_transmittance(boundary: &Boundary, normal: DVec3, corners: &[DVec3]) -> [f64; 3] {
     let above = above_horizon(normal, corners);
-    let next = above.iter().cycle().skip(1);
-    above.iter().zip(next).map(|(&from, &to)| edge(eta, normal, from, to)).sum::<f64>().abs()
+    let is_even = *boundary == Boundary::from(1.0);
+    let half_mean = |entering: &dyn Fn(f64) -> f64, cos| {
+        if is_even { 0.5 } else { mean_above(boundary.ior, entering, cos) }
+    };
+    boundary.each(|entering| {
+        let pairs = above.iter().zip(above.iter().cycle().skip(1));
+        pairs.map(|(&from, &to)| edge(&|cos| half_mean(entering, cos), normal, from, to)).sum::<f64>().abs()
+    })
 }
 
 /// The part of a polygon on the side that `normal` points to (Sutherland and Hodgman 1974).
@@ -32,7 +38,7 @@ pub(super) fn above_horizon(normal: DVec3, corners: &[DVec3]) -> Vec<DVec3> {
     above
 }
 
-fn edge(eta: f64, normal: DVec3, from: DVec3, to: DVec3) -> f64 {
+fn edge(half_mean: &dyn Fn(f64) -> f64, normal: DVec3, from: DVec3, to: DVec3) -> f64 {
     let across = from.cross(to);
     let size = across.length();
     // An edge through the receiver, or of no length, covers no angle.
@@ -42,17 +48,14 @@ fn edge(eta: f64, normal: DVec3, from: DVec3, to: DVec3) -> f64 {
     let (start, along) = (from.normalize(), across.cross(from).normalize());
     let angle = size.atan2(from.dot(to));
     let height = |alpha: f64| normal.dot(start * alpha.cos() + along * alpha.sin()).clamp(0.0, 1.0);
-    normal.dot(across) / size * integrate(|alpha| mean_above(eta, height(alpha)), 0.0, angle, 1e-9)
+    normal.dot(across) / size * integrate(|alpha| half_mean(height(alpha)), 0.0, angle, 1e-9)
 }
 
-/// H(c) = ∫_c^1 F_t c' dc' / (1 − c²): half the mean transmittance of uniform light from cosines above `cos`.
-fn mean_above(eta: f64, cos: f64) -> f64 {
-    if eta == 1.0 {
-        return 0.5;
-    }
+/// H(c) = ∫_c^1 F_t g c' dc' / (1 − c²): half the mean share that enters of uniform light from cosines above `cos`.
+fn mean_above(eta: f64, entering: &dyn Fn(f64) -> f64, cos: f64) -> f64 {
     // c'² = c² + w² (1 − c²) keeps the integrand smooth at both ends.
     let square = cos * cos;
-    let integrand = |w: f64| transmittance(eta, (square + w * w * (1.0 - square)).sqrt()) * w;
+    let integrand = |w: f64| entering((square + w * w * (1.0 - square)).sqrt()) * w;
     let critical = (1.0 - eta) * (1.0 + eta);
     if critical <= square {
         return integrate(integrand, 0.0, 1.0, 1e-10);
@@ -68,6 +71,11 @@ mod tests {
     use super::*;
     use crate::fresnel::hemispherical_transmittance;
     use crate::testing::assert_rel;
+
+    /// Without a gain.
+    fn polygon(eta: f64, normal: DVec3, corners: &[DVec3]) -> f64 {
+        polygon_transmittance(&eta.into(), normal, corners)[0]
+    }
 
     /// A regular polygon of many corners around +y, as far as a cone of
     /// half angle `half` reaches.
@@ -85,7 +93,7 @@ mod tests {
             for (tilt, half) in [(0.0f64, 0.6f64), (0.7, 0.6), (1.4, 0.6), (2.0, 0.6)] {
                 let normal = DVec3::new(tilt.sin(), tilt.cos(), 0.0);
                 let cone = super::super::ambient_transmittance(eta, tilt.cos(), half);
-                let round = |half: f64| polygon_transmittance(eta, normal, &disc(half, 720));
+                let round = |half: f64| polygon(eta, normal, &disc(half, 720));
                 // The polygon lacks (2π/720)²/6 = 1.3e-5 of the disc, up to four times that where only the rim is above the horizon:
                 // measured 4.5e-5.
                 assert!(
@@ -103,8 +111,8 @@ mod tests {
         for eta in [0.7, 1.0, 1.3] {
             let sky = disc(0.5 * PI, 8);
             let exact = PI * hemispherical_transmittance(eta);
-            assert_rel(polygon_transmittance(eta, DVec3::Y, &sky), exact, 1e-8, "tolerance of the integral");
-            let tilted = polygon_transmittance(eta, DVec3::new(0.8, 0.6, 0.0), &sky);
+            assert_rel(polygon(eta, DVec3::Y, &sky), exact, 1e-8, "tolerance of the integral");
+            let tilted = polygon(eta, DVec3::new(0.8, 0.6, 0.0), &sky);
             assert!(tilted < 0.99 * exact, "part of it is below the horizon");
         }
     }
@@ -112,12 +120,12 @@ mod tests {
     #[test]
     fn degenerate_polygons_give_nothing() {
         let normal = DVec3::Y;
-        assert_eq!(polygon_transmittance(1.3, normal, &[]), 0.0);
-        assert_eq!(polygon_transmittance(1.3, normal, &[DVec3::Y; 4]), 0.0);
+        assert_eq!(polygon(1.3, normal, &[]), 0.0);
+        assert_eq!(polygon(1.3, normal, &[DVec3::Y; 4]), 0.0);
         let below: Vec<_> = disc(0.6, 4).iter().map(|p| -p).collect();
-        assert_eq!(polygon_transmittance(1.3, normal, &below), 0.0);
+        assert_eq!(polygon(1.3, normal, &below), 0.0);
         // Seen from one of its own corners it covers a quarter of the directions in its plane and no solid angle.
         let square = [DVec3::ZERO, DVec3::X, DVec3::X + DVec3::Z, DVec3::Z];
-        assert!(polygon_transmittance(1.3, normal, &square).is_finite());
+        assert!(polygon(1.3, normal, &square).is_finite());
     }
 }

@@ -3,9 +3,8 @@
 use glam::DVec3;
 
 use super::strata::Strata;
-use crate::Surface;
-use crate::fresnel::transmittance;
-use crate::rgb::accumulate;
+use crate::rgb::{accumulate, scale};
+use crate::{Boundary, Surface};
 
 /// A point of the surface that light falls on.
 #[derive(Clone, Copy, Debug)]
@@ -19,7 +18,7 @@ pub(crate) struct Place {
 /// A place with what decides how much of a light enters there.
 pub(super) struct Receiver<'a> {
     pub surface: &'a Surface,
-    pub eta: f64,
+    pub boundary: Boundary,
     pub at: Place,
     pub strata: Strata,
 }
@@ -34,10 +33,10 @@ pub(super) struct Ray {
 }
 
 impl Receiver<'_> {
-    /// F_t · cos of a direction; 0 below the horizon.
-    pub fn share(&self, direction: DVec3) -> f64 {
+    /// F_t g cos of a direction, g the gain of entry; 0 below the horizon.
+    pub fn share(&self, direction: DVec3) -> [f64; 3] {
         let cos = self.at.normal.dot(direction);
-        if cos > 0.0 { transmittance(self.eta, cos) * cos } else { 0.0 }
+        if cos > 0.0 { scale(self.boundary.entering(cos), cos) } else { [0.0; 3] }
     }
 
     pub fn blocked(&self, direction: DVec3, distance: f64) -> bool {

@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::polygon::polygon_transmittance;
 use super::solid_angle::Seen;
 use super::{Emitter, Ray, Receiver};
-use crate::rgb::scale;
+use crate::rgb::{accumulate, product, scale};
 
 /// Half diagonal over distance below which the solid angle cancels to less than ten digits. There the rectangle is
 /// sampled by area instead, and a rule of degree 3 errs by the fourth power of this.
@@ -55,29 +55,32 @@ impl Rectangle {
         let ray = towards(receiver, self.point(point.map(|x| 2.0 * x - 1.0)));
         let area = 4.0 * self.half[0] * self.half[1];
         let solid_angle = area * -self.normal.dot(ray.direction) / (ray.distance * ray.distance);
-        Ray { weight: ray.weight.map(|weight| weight * solid_angle), ..ray }
+        Ray { weight: scale(ray.weight, solid_angle), ..ray }
     }
 
     /// ∫ F_t cos dω over what is above the receiver's horizon, sr.
-    fn open(&self, receiver: &Receiver<'_>) -> f64 {
+    fn open(&self, receiver: &Receiver<'_>) -> [f64; 3] {
         let from = receiver.at.position;
         if self.is_far(from) {
             let nodes = [0.5 - 0.5 / 3.0f64.sqrt(), 0.5 + 0.5 / 3.0f64.sqrt()];
-            let each = nodes.iter().flat_map(|&x| nodes.map(|y| self.area_ray(receiver, [x, y]).weight[0]));
-            return 0.25 * each.sum::<f64>();
+            let mut sum = [0.0; 3];
+            for [x, y] in nodes.iter().flat_map(|&x| nodes.map(|y| [x, y])) {
+                accumulate(&mut sum, self.area_ray(receiver, [x, y]).weight, 0.25);
+            }
+            return sum;
         }
         let corners = [[-1.0, -1.0], [-1.0, 1.0], [1.0, 1.0], [1.0, -1.0]].map(|at| self.point(at) - from);
-        polygon_transmittance(receiver.eta, receiver.at.normal, &corners)
+        polygon_transmittance(&receiver.boundary, receiver.at.normal, &corners)
     }
 
-    fn visible(&self, receiver: &Receiver<'_>) -> f64 {
+    fn visible(&self, receiver: &Receiver<'_>) -> [f64; 3] {
         let points = receiver.strata.points();
         if self.is_far(receiver.at.position) {
-            return receiver.visible(points.map(|point| self.area_ray(receiver, point)))[0];
+            return receiver.visible(points.map(|point| self.area_ray(receiver, point)));
         }
         let offset = self.center - receiver.at.position;
         let seen = Seen::new(self.axes.map(|axis| offset.dot(axis)), self.half, offset.dot(self.normal));
-        receiver.visible(points.map(|point| towards(receiver, self.point(seen.point(point)))))[0]
+        receiver.visible(points.map(|point| towards(receiver, self.point(seen.point(point)))))
     }
 }
 
@@ -87,8 +90,8 @@ impl Emitter for Rectangle {
             return [0.0; 3];
         }
         let open = self.open(receiver);
-        let visible = if self.shadow && open > 0.0 { self.visible(receiver) } else { 1.0 };
-        scale(self.radiance, open * visible)
+        let visible = if self.shadow && open != [0.0; 3] { self.visible(receiver) } else { [1.0; 3] };
+        product(self.radiance, product(open, visible))
     }
 }
 
@@ -96,7 +99,7 @@ fn towards(receiver: &Receiver<'_>, point: DVec3) -> Ray {
     let offset = point - receiver.at.position;
     let distance = offset.length();
     let direction = offset / distance;
-    Ray { direction, distance, weight: [receiver.share(direction); 3] }
+    Ray { direction, distance, weight: receiver.share(direction) }
 }
 
 #[cfg(test)]

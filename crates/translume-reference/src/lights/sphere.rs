@@ -2,10 +2,10 @@
 
 use glam::DVec3;
 
-use super::ambient::ambient_transmittance;
+use super::ambient::cone_transmittance;
 use super::strata::cone;
 use super::{Emitter, Ray, Receiver};
-use crate::rgb::scale;
+use crate::rgb::product;
 
 /// A sphere that shines outwards.
 pub(super) struct Sphere {
@@ -24,25 +24,26 @@ impl Emitter for Sphere {
         }
         let axis = offset / distance;
         let half_angle = (self.radius / distance).asin();
-        let open = ambient_transmittance(receiver.eta, receiver.at.normal.dot(axis), half_angle);
-        let visible = if self.shadow && open > 0.0 { self.visible(receiver, axis, distance) } else { 1.0 };
-        scale(self.radiance, open * visible)
+        let open = cone_transmittance(&receiver.boundary, receiver.at.normal.dot(axis), half_angle);
+        let shaded = self.shadow && open != [0.0; 3];
+        let visible = if shaded { self.visible(receiver, axis, distance) } else { [1.0; 3] };
+        product(self.radiance, product(open, visible))
     }
 }
 
 impl Sphere {
-    fn visible(&self, receiver: &Receiver<'_>, axis: DVec3, distance: f64) -> f64 {
+    fn visible(&self, receiver: &Receiver<'_>, axis: DVec3, distance: f64) -> [f64; 3] {
         let square = (self.radius / distance).powi(2);
         // 1 − cos of the half angle without cancellation.
         let opening = square / (1.0 + (1.0 - square).sqrt());
         let rays = receiver.strata.points().map(|point| {
             let (direction, height) = cone(axis, opening, point);
-            let weight = [receiver.share(direction); 3];
+            let weight = receiver.share(direction);
             // Half the chord: r² − d² sin² of the angle from the axis.
             let half = (self.radius.powi(2) - distance.powi(2) * height * (2.0 - height)).max(0.0).sqrt();
             Ray { direction, distance: distance * (1.0 - height) - half, weight }
         });
-        receiver.visible(rays)[0]
+        receiver.visible(rays)
     }
 }
 
@@ -133,7 +134,7 @@ mod tests {
         for (eta, slope) in [1.0, 3.0].into_iter().flat_map(|eta| [0.3, 0.8, 2.0].map(|slope| (eta, slope))) {
             let seen = |slope: f64| {
                 let above = above_horizon(DVec3::new(-1.0, slope, 0.0), &rim);
-                polygon_transmittance(eta, DVec3::Y, &above)
+                polygon_transmittance(&eta.into(), DVec3::Y, &above)[0]
             };
             let light = sphere(center.to_array(), radius);
             let measured = at_origin(&half_roof(0.01 * slope, 0.01), &light, eta, 96)[0];

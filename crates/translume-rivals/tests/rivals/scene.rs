@@ -84,7 +84,8 @@ impl Scene {
     pub fn judge<P: Profile>(&self, profiles: [P; 3], stride: usize, edge: f64) -> Picture {
         let surface = self.surface();
         let lights: Vec<_> = self.lights.iter().map(|each| light(each, 1.0)).collect();
-        let converged = Converged::with_profiles(&surface, &lights, self.medium.ior.into(), profiles, edge);
+        let converged =
+            Converged::with_profiles(&surface, &lights, f64::from(self.medium.ior), profiles, edge);
         let size = self.shot.size as usize;
         let picked = |k: &usize| (k % size) % stride == stride / 2 && (k / size) % stride == stride / 2;
         let hits = self.hits(&surface);

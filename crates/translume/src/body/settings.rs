@@ -2,6 +2,7 @@
 
 use super::Body;
 use super::kernel::{check_kernel, check_method};
+use crate::boundary::Boundary;
 use crate::buffers::Outputs;
 use crate::evaluate::Evaluate;
 use crate::stages::scatter::Method;
@@ -32,16 +33,16 @@ impl Body {
         &self.shadows
     }
 
-    /// Changes the medium; the next frame scatters anew, and gathers too if the index of refraction changed.
+    /// Changes the medium; the next frame scatters anew, and gathers too if the index of refraction or the profile's gain of
+    /// entry changed.
     ///
     /// # Errors
     /// [`Error::Medium`] names the coefficient that cannot be.
     pub fn set_medium(&mut self, medium: Medium) -> Result<(), Error> {
         medium.validate()?;
         self.scatter_stale |= medium != self.medium;
-        self.surface_stale |= medium.ior != self.medium.ior;
         self.medium = medium;
-        self.exit_scale = self.profile.exit_scale(medium.ior);
+        self.renew_surface();
         Ok(())
     }
 
@@ -76,7 +77,8 @@ impl Body {
         Ok(())
     }
 
-    /// Changes the profile; the next frame scatters anew, unless both are classical dipoles, which differ in how light leaves alone.
+    /// Changes the profile; the next frame scatters anew, unless both are classical dipoles, which differ in how light leaves alone, and gathers
+    /// too where the gain of entry is another.
     ///
     /// # Errors
     /// [`Error::Profile`] names the parameter that cannot be, [`Error::Medium`] the coefficient of a layer.
@@ -84,9 +86,17 @@ impl Body {
         profile.validate()?;
         check_kernel(&profile, self.method, self.evaluate)?;
         self.scatter_stale |= !profile.scatters_like(&self.profile);
-        self.exit_scale = profile.exit_scale(self.medium.ior);
         self.profile = profile;
+        self.renew_surface();
         Ok(())
+    }
+
+    /// What medium and profile say of how light enters and leaves.
+    fn renew_surface(&mut self) {
+        let boundary = Boundary::new(&self.profile, &self.medium);
+        self.surface_stale |= boundary != self.boundary;
+        self.boundary = boundary;
+        self.exit_scale = self.profile.exit_scale(self.medium.ior);
     }
 
     /// Changes how the scatter sum is evaluated; the next frame scatters anew.

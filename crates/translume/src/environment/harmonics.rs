@@ -1,9 +1,8 @@
 //! Spherical harmonics up to order 2: projection, rotation, and irradiance through a smooth surface.
 
 use super::grid::Grid;
-use crate::fresnel;
+use crate::boundary::Boundary;
 use glam::{DMat3, DVec3};
-use std::f64::consts::TAU;
 
 /// Light from everywhere, as nine spherical harmonics of radiance.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -69,7 +68,7 @@ impl EnvironmentLight {
     /// `eta`: index of refraction inside over outside, above 0. `normal`: unit length.
     #[must_use]
     pub fn irradiance(&self, eta: f32, normal: [f32; 3]) -> [f32; 3] {
-        irradiance(&self.through(eta), normal)
+        irradiance(&self.through(&Boundary { eta, slant: [0.0; 3] }), normal)
     }
 
     /// Radiance from a unit direction as far as nine harmonics know it; negative where they swing below zero.
@@ -85,13 +84,14 @@ impl EnvironmentLight {
     /// Factors (RGB, 0) of the polynomials 1, y, z, x, xy, yz, 3z² − 1, xz, x² − y² of a normal whose sum is the irradiance inside
     /// the surface. `shaders/shared/environment.wgsl` sums them.
     ///
-    /// By the theorem of Funk and Hecke a convolution with a lobe around the normal scales band l by the lobe's a_l, [`lobe`]
+    /// By the theorem of Funk and Hecke a convolution with a lobe around the normal scales band l by the lobe's a_l, [`Boundary::lobe`]
     /// (Ramamoorthi and Hanrahan 2001, there for the plain cosine).
-    pub(crate) fn through(&self, eta: f32) -> [[f32; 4]; 9] {
-        let lobe = lobe(eta.into());
+    pub(crate) fn through(&self, boundary: &Boundary) -> [[f32; 4]; 9] {
+        let lobe = boundary.lobe();
         std::array::from_fn(|k| {
-            let [r, g, b] = self.coefficients[k].map(|c| (f64::from(c) * lobe[BANDS[k]] * NORMS[k]) as f32);
-            [r, g, b, 0.0]
+            let factor =
+                |c: usize| (f64::from(self.coefficients[k][c]) * lobe[BANDS[k]][c] * NORMS[k]) as f32;
+            [factor(0), factor(1), factor(2), 0.0]
         })
     }
 }
@@ -135,21 +135,4 @@ fn turned_factors(turn: DMat3, [constant, y, z, x, xy, yz, zz, xz, xx_yy]: [f64;
     );
     let [[xx, xy, xz], [_, yy, yz], [_, _, zz]] = (turn * form * turn.transpose()).to_cols_array_2d();
     [constant, vector.y, vector.z, vector.x, 2.0 * xy, 2.0 * yz, 0.5 * zz, 2.0 * xz, 0.5 * (xx - yy)]
-}
-
-/// a_l = 2π ∫ F_t(eta, c)·c·P_l(c) dc for l = 0, 1, 2: π, 2π/3, π/4 at eta = 1.
-fn lobe(eta: f64) -> [f64; 3] {
-    // The substitution c = critical + (1 − critical)·u² tames the square root where the surface begins to transmit.
-    const STEPS: usize = 2048;
-    let critical = (1.0 - eta * eta).max(0.0).sqrt();
-    let mut sums = [0.0; 3];
-    for k in 0..STEPS {
-        let u = (k as f64 + 0.5) / STEPS as f64;
-        let cosine = critical + (1.0 - critical) * u * u;
-        let step = (1.0 - critical) * 2.0 * u / STEPS as f64;
-        let weight = TAU * fresnel::transmittance(eta, cosine) * cosine * step;
-        let legendre = [1.0, cosine, 1.5 * cosine * cosine - 0.5];
-        sums = std::array::from_fn(|l| sums[l] + weight * legendre[l]);
-    }
-    sums
 }

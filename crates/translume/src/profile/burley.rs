@@ -1,8 +1,7 @@
 //! Normalised diffusion: two exponentials fitted to random walks in an index-matched half-space.
 
-use super::albedo::albedo;
+use super::albedo::Albedo;
 use super::channel::Channel;
-use super::half_space::Entry;
 use super::radial::Radial;
 use crate::{Error, Medium};
 use std::f64::consts::PI;
@@ -67,8 +66,8 @@ pub(crate) struct Burley {
 impl Burley {
     /// `fit`: with the length of this channel, mm, where it is given.
     pub fn new(channel: &Channel, fit: BurleyFit, index: usize) -> Self {
-        let entry = if fit == BurleyFit::Searchlight { Entry::Normal } else { Entry::Diffuse };
-        let albedo = albedo(channel.albedo(), entry);
+        let matched = Albedo::new(channel.albedo(), 1.0);
+        let albedo = if fit == BurleyFit::Searchlight { matched.along(1.0) } else { matched.diffuse() };
         let mean_free_path = 1.0 / channel.extinction();
         let length = match fit {
             BurleyFit::Searchlight => mean_free_path / (1.85 - albedo + 7.0 * (albedo - 0.8).abs().powi(3)),

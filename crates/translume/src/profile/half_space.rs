@@ -13,10 +13,12 @@ use std::sync::LazyLock;
 /// How light goes on when it has just entered.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Entry {
-    /// Along the normal.
-    Normal,
-    /// As the same radiance from all sides enters: as under a sky, or as a lamp on the average of a convex body's surface.
+    /// Along the normal. What enters aslant wanders as far, and more of it returns: the gather knows the angle of each light and multiplies with
+    /// a gain ([`Profile::slant`](crate::Profile::slant)).
     #[default]
+    Normal,
+    /// As the same radiance from all sides enters, whatever the lights. A little closer than [`Normal`](Self::Normal) where hardly anything absorbs
+    /// and a sky is all the light there is: less of it wanders far, which a total does not tell.
     Diffuse,
 }
 

@@ -49,9 +49,9 @@ pub(crate) fn smooth_length(channels: &Channels) -> f32 {
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Profile {
-    /// A flat half-space with *all* orders of scattering, tabulated from random walks over r, α' and η (0.6 to 2.5; as there beyond). Light
-    /// enters along the normal or from all sides. Within 2 % of the walks wherever they are, near the entry too, and as bright as they
-    /// to 0.5 %: what is left is that no body is flat. Through thin parts lit from behind it is darker than a dipole, and reality brighter than
+    /// A flat half-space with *all* orders of scattering, tabulated from random walks over r, α' and η (0.6 to 2.5; as there beyond).
+    /// Within 2 % of the walks wherever they are, near the entry too, and as bright as they to 0.5 %: what is left is that no body is
+    /// flat. Through thin parts lit from behind it is darker than a dipole, and reality brighter than
     /// both. Scattering is isotropic with σ_s'.
     HalfSpace(Entry),
     /// The classical dipole with L_o = F_t·B/π, to the letter of Gong et al. 2008 (eqs. 3–7). It loses 6 % at η = 1.3 and 9 % at
@@ -103,18 +103,17 @@ pub enum Diffusion {
 }
 
 impl Default for Profile {
-    /// The half-space that light enters from all sides: a lamp meets a body at all angles too.
+    /// The half-space that knows at which angle light enters.
     fn default() -> Self {
-        Self::HalfSpace(Entry::Diffuse)
+        Self::HalfSpace(Entry::Normal)
     }
 }
 
 impl Profile {
-    /// Every profile without parameters, with its name. Half-space and normalised diffusion are those of diffuse entry unless the name says
-    /// otherwise.
+    /// Every profile without parameters, with its name. Normalised diffusion is that of diffuse entry unless the name says otherwise.
     pub const NAMES: &[(&'static str, Self)] = &[
-        ("half-space", Self::HalfSpace(Entry::Diffuse)),
-        ("half-space-searchlight", Self::HalfSpace(Entry::Normal)),
+        ("half-space", Self::HalfSpace(Entry::Normal)),
+        ("half-space-diffuse", Self::HalfSpace(Entry::Diffuse)),
         ("dipole", Self::Dipole),
         ("dipole-normalised", Self::DipoleNormalised),
         ("dipole-oriented", Self::DipoleOriented),
@@ -159,6 +158,20 @@ impl Profile {
         match self {
             Self::Dipole => 1.0,
             _ => (1.0 / fresnel::hemispherical_transmittance(f64::from(ior))) as f32,
+        }
+    }
+
+    /// k of each channel, 0 to below 1, of the gain of entry: the gather counts light whose direction inside has the cosine μ' to the normal
+    /// 1/(1 − k (1 − μ')) times, for what enters aslant starts less deep and more of it returns. 0 for all but [`HalfSpace`](Self::HalfSpace) of
+    /// [`Entry::Normal`]. A host that gives [`Lighting::Irradiance`](crate::Lighting::Irradiance) may count its light so, or as if all came along
+    /// the normal.
+    #[must_use]
+    pub fn slant(&self, medium: &Medium) -> [f32; 3] {
+        match self {
+            Self::HalfSpace(Entry::Normal) => {
+                Channel::of(medium).map(|channel| albedo::slant(&channel) as f32)
+            }
+            _ => [0.0; 3],
         }
     }
 

@@ -40,7 +40,7 @@ fn on_the_spot(_: &Scene, totals: [f64; 3]) -> [f64; 3] {
 /// Profiles without bound at r = 0, whose constant for large mean free paths is another.
 const PEAKED: &[&str] = &[
     "half-space",
-    "half-space-searchlight",
+    "half-space-diffuse",
     "dipole-single",
     "better-dipole",
     "better-dipole-single",

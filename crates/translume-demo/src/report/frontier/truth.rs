@@ -13,7 +13,7 @@ use translume_reference::composite::Camera;
 use translume_reference::converged::Converged;
 use translume_reference::fresnel::{hemispherical_transmittance, transmittance};
 use translume_reference::profile::Numeric;
-use translume_reference::{Hit, Light, Surface};
+use translume_reference::{Boundary, Hit, Light, Surface};
 
 /// How long light is followed through a scene.
 #[derive(Clone, Copy, Debug)]
@@ -188,7 +188,7 @@ fn spread(mask: &[bool], samples: usize) -> Vec<usize> {
     inside.into_iter().step_by(stride).collect()
 }
 
-/// Radiance at the middle of some pixels by each profile that the reference knows; light is cast once.
+/// Radiance at the middle of some pixels by each profile that the reference knows; light is cast once for all whose gain of entry is the same.
 fn integrals(
     stage: &Stage,
     seen: &Seen,
@@ -206,17 +206,20 @@ fn integrals(
         let leaves = transmittance(eta, -normal.dot(*direction)) / (PI * hemispherical_transmittance(eta));
         b.map(|b| b * leaves)
     };
-    let (mut lit, mut all) = (None, Vec::new());
+    let mut lit: Option<(Boundary, Converged<'_, Numeric>)> = None;
+    let mut all = Vec::new();
     for &name in profiles {
         told(&format!("integral of {name}"));
         let start = Instant::now();
-        let Some(twins) = twins(&Profile::named(name)?, &stage.medium)? else { continue };
-        let converged = match &mut lit {
-            None => lit.insert(Converged::with_profiles(surface, lights, eta, twins, edge)),
-            Some(converged) => {
-                converged.set_profiles(twins);
-                converged
+        let profile = Profile::named(name)?;
+        let Some(twins) = twins(&profile, &stage.medium)? else { continue };
+        let boundary = translume_twin::boundary(&profile, &stage.medium);
+        let (_, converged) = match &mut lit {
+            Some(known) if known.0 == boundary => {
+                known.1.set_profiles(twins);
+                known
             }
+            _ => lit.insert((boundary, Converged::with_profiles(surface, lights, boundary, twins, edge))),
         };
         all.push((name, hits.iter().zip(converged.exitance(&places)).map(leaving).collect()));
         log::info!("{}: integral of {name} in {:.1?}", stage.name, start.elapsed());
