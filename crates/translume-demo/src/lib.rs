@@ -6,6 +6,7 @@ mod cli;
 mod develop;
 mod environment;
 mod error;
+mod film;
 mod framing;
 mod gpu;
 mod inspect;

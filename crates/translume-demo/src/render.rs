@@ -51,12 +51,12 @@ pub fn run(arguments: &Render) -> Result<(), Error> {
     let unwrapped = start.elapsed().as_secs_f32();
 
     let descriptor = substance.descriptor(mesh, &atlas, opened.flat_normals);
-    let samples = arguments.samples.unwrap_or(output.samples());
+    let samples = arguments.samples.unwrap_or(output.format.samples());
     let translume = Translume::new(&gpu.device)?;
     let mut studio = Studio::new(&gpu, &translume, &descriptor, [camera.width, camera.height], samples)?;
     studio.body_mut().set_timings(arguments.timings);
     let camera = subject.look(&camera);
-    let develop = output.develop(scene.look.exposure);
+    let develop = output.format.develop(scene.look.exposure);
     let bar = progress::bar("render");
     bar.set_length(arguments.frames.into());
     let start = Instant::now();

@@ -28,6 +28,12 @@ pub enum Event {
     Judged(u64, Result<Judged, Error>),
     /// A file was chosen in a dialogue.
     Chosen(Choice, PathBuf),
+    /// So many frames are there.
+    Exporting {
+        done: u32,
+    },
+    /// All frames are in files, or none where that was cancelled.
+    Exported(Result<Option<PathBuf>, Error>),
     /// A file is there.
     Written(Result<PathBuf, Error>),
 }
@@ -39,6 +45,8 @@ pub enum Choice {
     Environment,
     SaveScene,
     SavePicture,
+    SaveAnimation,
+    SaveSequence,
 }
 
 /// Where they tell it, and wake the window.

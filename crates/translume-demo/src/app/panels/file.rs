@@ -49,6 +49,14 @@ fn file(app: &mut App, ui: &mut egui::Ui) {
     if ui.button("Save picture…").clicked() {
         app.ask(Choice::SavePicture);
     }
+    ui.add_enabled_ui(app.exporting.is_none(), |ui| {
+        if ui.button("Save animation…").clicked() {
+            app.ask(Choice::SaveAnimation);
+        }
+        if ui.button("Save image sequence…").clicked() {
+            app.ask(Choice::SaveSequence);
+        }
+    });
     if ui.button("Save scene…").clicked() {
         app.ask(Choice::SaveScene);
     }
@@ -88,6 +96,8 @@ pub fn dialogue(choice: Choice) -> Option<PathBuf> {
         Choice::Environment => dialogue.add_filter("skies", MAPS).pick_file(),
         Choice::SaveScene => dialogue.set_file_name("scene.json").save_file(),
         Choice::SavePicture => dialogue.set_file_name("picture.png").save_file(),
+        Choice::SaveAnimation => dialogue.set_file_name("morph.png").save_file(),
+        Choice::SaveSequence => dialogue.set_file_name("morph_%04d.png").save_file(),
     }
 }
 
@@ -98,6 +108,8 @@ pub fn chosen(app: &mut App, choice: Choice, path: &Path) {
         Choice::Environment => super::light_from(app, path),
         Choice::SaveScene => save_scene(app, path),
         Choice::SavePicture => save_picture(app, path),
+        Choice::SaveAnimation => super::export::start(app, path, false),
+        Choice::SaveSequence => super::export::start(app, path, true),
     }
 }
 
@@ -128,7 +140,7 @@ fn save_picture(app: &mut App, path: &Path) {
         Ok(output) => {
             let scene = app.moment(&loaded, pixels);
             let (overlay, errors) = (Overlay::None, Arc::default());
-            let samples = output.samples();
+            let samples = output.format.samples();
             let wish = Wish { scene, loaded, pixels, samples, moving: false, overlay, errors, other: None };
             app.worker.order(Order::Write(wish, output, path.to_owned()));
         }

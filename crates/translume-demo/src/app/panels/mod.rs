@@ -1,6 +1,7 @@
 //! What stands around the picture.
 
 mod compare;
+mod export;
 mod file;
 mod frames;
 mod keys;
@@ -35,6 +36,7 @@ pub fn show(app: &mut App, ui: &mut egui::Ui) {
         section(ui, "Quality", false, |ui| quality::show(app, ui));
         section(ui, "Behind the picture", false, |ui| compare::overlays(app, ui));
         section(ui, "Beside the picture", false, |ui| compare::beside(app, ui));
+        section(ui, "Export", false, |ui| export::show(app, ui));
         section(ui, "Timings", true, |ui| app.frames.show(ui));
     });
     compare::atlas(app, ui.ctx());
