@@ -1,5 +1,6 @@
 //! The program `translume`: look at translucent models in a window, render, inspect and measure them.
 
+mod albedo;
 mod app;
 mod canvas;
 mod cli;

@@ -133,7 +133,7 @@ fn srgb(linear: f32) -> f32 {
 }
 
 /// The inverse of [`srgb`].
-fn linear(srgb: f32) -> f32 {
+pub fn linear(srgb: f32) -> f32 {
     if srgb <= 0.040_45 { srgb / 12.92 } else { ((srgb + 0.055) / 1.055).powf(2.4) }
 }
 

@@ -43,6 +43,7 @@ pub enum Event {
 pub enum Choice {
     Open,
     Environment,
+    Albedo,
     SaveScene,
     SavePicture,
     SaveAnimation,

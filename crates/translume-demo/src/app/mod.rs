@@ -177,11 +177,14 @@ impl App {
         app
     }
 
-    /// Opens a model or a scene, or takes a map of the sky for the light.
+    /// Opens a model or a scene, or takes a map of the sky for the light or a picture for the albedo.
     fn open(&mut self, name: &str) {
         let ending = Path::new(name).extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase());
         if matches!(ending.as_deref(), Some("exr" | "hdr")) {
             return panels::light_from(self, Path::new(name));
+        }
+        if matches!(ending.as_deref(), Some("png" | "jpg" | "jpeg")) {
+            return panels::albedo_from(self, Path::new(name));
         }
         match loaded::scene_of(name, self.quality()) {
             Ok(wanted) => {

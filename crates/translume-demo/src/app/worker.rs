@@ -3,6 +3,7 @@
 use super::events::{Event, Events};
 use super::export::Export;
 use super::loaded::Loaded;
+use crate::albedo;
 use crate::develop::Developer;
 use crate::error::Error;
 use crate::framing::Subject;
@@ -140,6 +141,8 @@ struct Easel {
 struct Seat {
     loaded: Arc<Loaded>,
     substance: Substance,
+    /// The texture that the body has.
+    albedo: Option<PathBuf>,
     lights: Lit,
     studio: Studio,
     outlines: Outlines,
@@ -278,7 +281,7 @@ impl Easel {
         let motion = Motion::new(&loaded.opened.model, &scene.wish(), 1)?;
         let subject = Subject::new(motion.points()?);
         let moment = motion.moment(0);
-        let seat = self.seat(seat, loaded, substance, *pixels, *samples)?;
+        let seat = self.seat(seat, loaded, (substance, &scene.albedo), *pixels, *samples)?;
         seat.lights.update(scene.lights.as_deref().unwrap_or_default(), loaded.opened.just_below_y0())?;
         let camera = subject.look(&camera(scene, &subject, VIEW));
         let is_one_picture = *moving && *overlay == Overlay::None;
@@ -299,13 +302,13 @@ impl Easel {
         &mut self,
         index: usize,
         loaded: &Arc<Loaded>,
-        substance: Substance,
+        (substance, albedo): (Substance, &Option<PathBuf>),
         pixels: [u32; 2],
         samples: u32,
     ) -> Result<&mut Seat, Error> {
         let slot = &mut self.seats[index];
         let fits = |seat: &mut Seat| seat.loaded.id == loaded.id && seat.substance.is_like(&substance);
-        let seat = match slot.take_if(fits) {
+        let mut seat = match slot.take_if(fits) {
             Some(mut seat) => {
                 seat.studio.resize(pixels, samples)?;
                 let body = seat.studio.body_mut();
@@ -320,9 +323,14 @@ impl Easel {
                 studio.body_mut().set_timings(true);
                 let outlines = Outlines::new(&self.gpu.device, atlas);
                 let lights = slot.take().map(|seat| seat.lights).unwrap_or_default();
-                Seat { loaded: Arc::clone(loaded), substance, lights, studio, outlines }
+                Seat { loaded: Arc::clone(loaded), substance, albedo: None, lights, studio, outlines }
             }
         };
+        if seat.albedo != *albedo {
+            let laid = (&loaded.opened.model.mesh, &loaded.atlas);
+            albedo::apply(seat.studio.body_mut(), &self.gpu.queue, albedo.as_deref(), laid)?;
+            seat.albedo.clone_from(albedo);
+        }
         Ok(slot.insert(seat))
     }
 }

@@ -16,6 +16,7 @@ pub use file::{chosen, dialogue};
 pub use frames::Frames;
 pub use keys::keys;
 pub use light::light_from;
+pub use medium::albedo_from;
 
 use super::App;
 use eframe::egui;
