@@ -5,6 +5,7 @@
 
 mod events;
 mod export;
+mod ground;
 mod loaded;
 mod orbit;
 mod panels;

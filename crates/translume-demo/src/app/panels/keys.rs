@@ -29,6 +29,7 @@ const MOUSE: &[(&str, &str)] = &[
     ("wheel, pinch", "nearer and farther"),
     ("double click", "see all of the model"),
     ("drag a light's dot", "move the light"),
+    ("Ctrl drag a light's dot", "put the light onto the surface"),
     ("drop a file", "open it"),
 ];
 
