@@ -425,7 +425,7 @@ impl App {
         let scene = Scene { camera: None, ..self.scene.clone() };
         match loaded.opened.subject(&scene, 1) {
             Ok(subject) => {
-                self.scene.camera = Some(crate::setup::camera(&scene, &subject, crate::setup::VIEW))
+                self.scene.camera = Some(crate::setup::camera(&scene, &subject, crate::setup::VIEW));
             }
             Err(error) => self.trouble(&error),
         }

@@ -176,7 +176,7 @@ impl Easel {
                 }
             }
             if let Some(wish) = newest {
-                events.send(Event::Shown(self.show(&wish)));
+                events.send(Event::Shown(self.show(&wish).map(Box::new)));
             }
             if let Some(export) = exports.pop_front() {
                 match self.export(export, events) {
@@ -237,7 +237,7 @@ impl Easel {
                 None
             }
         };
-        Ok(Shown { image, other, atlas, timings, counters, took })
+        Ok(Shown { image, other, atlas, counters, timings, took })
     }
 
     fn develop(&mut self, seat: usize, wish: &Wish) -> Result<egui::ColorImage, Error> {
