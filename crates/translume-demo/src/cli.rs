@@ -70,6 +70,9 @@ pub struct Render {
     /// Medium by name, as jade, wax, skimmilk, marble, skin1; a wrong name lists them all.
     #[arg(long, value_name = "NAME")]
     pub medium: Option<String>,
+    /// Texture of albedo, .png or .jpg, on the model's own texture coordinates: how much of the light comes back.
+    #[arg(long, value_name = "FILE")]
+    pub albedo: Option<PathBuf>,
     /// Millimetres per unit of the model. By default a model is taken to be 100 mm from corner to corner.
     #[arg(long, value_name = "X")]
     pub mm_per_unit: Option<f32>,

@@ -29,6 +29,8 @@ pub enum Error {
     #[error("{}: {problem}", path.display())]
     Environment { path: PathBuf, problem: String },
     #[error("{}: {problem}", path.display())]
+    Texture { path: PathBuf, problem: String },
+    #[error("{}: {problem}", path.display())]
     Table { path: PathBuf, problem: String },
     #[error("{}: {problem}", path.display())]
     Output { path: PathBuf, problem: String },

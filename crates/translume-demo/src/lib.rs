@@ -1,11 +1,13 @@
 //! The program `translume`: look at translucent models in a window, render, inspect and measure them.
 
+mod albedo;
 mod app;
 mod canvas;
 mod cli;
 mod develop;
 mod environment;
 mod error;
+mod film;
 mod framing;
 mod gpu;
 mod inspect;

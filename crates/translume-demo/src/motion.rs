@@ -8,7 +8,7 @@ use translume_mesh::rig::{Animation, Pose, Rig};
 use translume_mesh::warp::{Axis, Warp};
 
 /// What the command line or a scene asks for.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Wish {
     /// Weight of each morph target, or fewer; none for what the file says.
     pub morph: Vec<f32>,

@@ -1,7 +1,8 @@
 //! Pictures: from samples to pixels, and to files that are either whole or not there.
 
 use crate::error::Error;
-use std::io::{BufWriter, Write};
+use crate::film::{Film, put};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use tempfile::NamedTempFile;
 
@@ -35,6 +36,24 @@ pub enum Format {
 
 /// Linear grey behind the body in a PNG, in the middle and at the rim.
 pub const BACKDROP: [f32; 2] = [0.075, 0.045];
+
+impl Format {
+    /// Samples along each side of a pixel that suit this kind of file: an EXR is compared, pixel centre by pixel centre.
+    pub fn samples(self) -> u32 {
+        match self {
+            Self::Png => 2,
+            Self::Exr => 1,
+        }
+    }
+
+    /// What becomes of samples for this kind of file.
+    pub fn develop(self, exposure: f32) -> Develop {
+        match self {
+            Self::Png => Develop::Display { exposure },
+            Self::Exr => Develop::Radiance,
+        }
+    }
+}
 
 impl Develop {
     /// `place`: from the middle of the picture, ±1 at its edges.
@@ -114,7 +133,7 @@ fn srgb(linear: f32) -> f32 {
 }
 
 /// The inverse of [`srgb`].
-fn linear(srgb: f32) -> f32 {
+pub fn linear(srgb: f32) -> f32 {
     if srgb <= 0.040_45 { srgb / 12.92 } else { ((srgb + 0.055) / 1.055).powf(2.4) }
 }
 
@@ -126,7 +145,7 @@ fn dither(x: u32, y: u32) -> f32 {
 /// A picture's file, checked before the work begins and put in place when the work is done.
 pub struct Output {
     path: PathBuf,
-    directory: PathBuf,
+    pub directory: PathBuf,
     pub format: Format,
     /// How long a frame of an animation is shown, seconds.
     pub frame_seconds: f32,
@@ -155,74 +174,42 @@ impl Output {
         Ok(Self { path: path.to_owned(), directory, format, frame_seconds: 1.0 / 24.0 })
     }
 
-    /// Samples along each side of a pixel that suit this kind of file: an EXR is compared, pixel centre by pixel centre.
-    pub fn samples(&self) -> u32 {
-        match self.format {
-            Format::Png => 2,
-            Format::Exr => 1,
-        }
-    }
-
-    /// What becomes of samples for this kind of file.
-    pub fn develop(&self, exposure: f32) -> Develop {
-        match self.format {
-            Format::Png => Develop::Display { exposure },
-            Format::Exr => Develop::Radiance,
-        }
-    }
-
     /// Writes one picture, or an animation of several.
     pub fn write(&self, frames: &[Picture]) -> Result<(), Error> {
-        let fail = |problem: String| Error::Output { path: self.path.clone(), problem };
-        let mut file = NamedTempFile::new_in(&self.directory)
-            .map_err(|error| fail(format!("cannot be written: {error}")))?;
         match self.format {
             Format::Png => {
-                write_png(&mut file, frames, self.frame_seconds).map_err(|error| fail(error.to_string()))?;
+                let mut film = self.film(frames.len() as u32)?;
+                frames.iter().try_for_each(|frame| film.add(frame))?;
+                film.finish()
             }
-            Format::Exr => write_exr(&mut file, &frames[0]).map_err(|error| fail(error.to_string()))?,
+            Format::Exr => {
+                let fail = |problem: String| Error::Output { path: self.path.clone(), problem };
+                let mut file = NamedTempFile::new_in(&self.directory)
+                    .map_err(|error| fail(format!("cannot be written: {error}")))?;
+                write_exr(&mut file, &frames[0]).map_err(|error| fail(error.to_string()))?;
+                put(file, &self.path)
+            }
         }
-        readable_by_all(file.as_file()).map_err(|error| fail(error.to_string()))?;
-        file.persist(&self.path).map_err(|error| fail(format!("cannot be written: {}", error.error)))?;
-        Ok(())
+    }
+
+    /// A PNG of so many frames, which come one by one.
+    pub fn film(&self, frames: u32) -> Result<Film, Error> {
+        if self.format != Format::Png {
+            let problem = "only a PNG can be animated; name a .png, or numbered files as name_%04d.exr";
+            return Err(Error::Output { path: self.path.clone(), problem: problem.to_owned() });
+        }
+        Film::new(&self.path, &self.directory, frames, self.frame_seconds)
     }
 }
 
 /// Temporary files belong to their owner alone; a picture is like any other file.
-fn readable_by_all(file: &std::fs::File) -> std::io::Result<()> {
+pub fn readable_by_all(file: &std::fs::File) -> std::io::Result<()> {
     #[cfg(unix)]
     {
         use std::os::unix::fs::PermissionsExt as _;
         file.set_permissions(std::fs::Permissions::from_mode(0o644))?;
     }
     file.sync_all()
-}
-
-fn write_png(
-    file: &mut NamedTempFile,
-    frames: &[Picture],
-    frame_seconds: f32,
-) -> Result<(), png::EncodingError> {
-    let mut encoder = png::Encoder::new(BufWriter::new(file), frames[0].width, frames[0].height);
-    encoder.set_color(png::ColorType::Rgb);
-    encoder.set_depth(png::BitDepth::Eight);
-    encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
-    if frames.len() > 1 {
-        encoder.set_animated(frames.len() as u32, 0)?;
-        let (numerator, denominator) = delay(frame_seconds);
-        encoder.set_frame_delay(numerator, denominator)?;
-    }
-    let mut writer = encoder.write_header()?;
-    for frame in frames {
-        writer.write_image_data(&frame.to_srgb())?;
-    }
-    writer.finish()
-}
-
-/// Seconds as a fraction of 16-bit numbers: in steps of 0.1 ms while they fit, else in whole seconds, up to 18 hours.
-fn delay(seconds: f32) -> (u16, u16) {
-    let fine = (seconds * 1e4).round();
-    if fine <= f32::from(u16::MAX) { (fine as u16, 10_000) } else { (seconds.round() as u16, 1) }
 }
 
 fn write_exr(file: &mut NamedTempFile, picture: &Picture) -> exr::error::UnitResult {
@@ -277,12 +264,6 @@ mod tests {
         assert_eq!(std::fs::read_dir(directory.path()).unwrap().count(), 2, "no temporary file stays behind");
         assert!(Output::new(&directory.path().join("grey.bmp")).is_err());
         assert!(Output::new(&directory.path().join("nowhere/grey.png")).is_err());
-    }
-
-    #[test]
-    fn delays_are_fractions() {
-        assert_eq!(delay(1.0 / 24.0), (417, 10_000));
-        assert_eq!(delay(90.2), (90, 1));
     }
 
     #[test]

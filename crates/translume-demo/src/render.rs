@@ -1,5 +1,6 @@
 //! `translume render`: a model or a scene becomes a picture.
 
+use crate::albedo::Albedo;
 use crate::cli::{Render, put};
 use crate::environment::Environment;
 use crate::error::Error;
@@ -45,18 +46,21 @@ pub fn run(arguments: &Render) -> Result<(), Error> {
     let subject = opened.subject(&scene, arguments.frames).map_err(blame)?;
     let camera = camera(&scene, &subject, arguments.view);
     let camera = arguments.size.map_or(camera, |width| camera.resized(width));
+    let albedo = scene.albedo.as_ref().map(|file| Albedo::open(file, mesh)).transpose()?;
     let lights = opened.lights(&scene, &subject, arguments.view)?;
     let start = Instant::now();
     let atlas = model::unwrap(mesh, &options)?;
     let unwrapped = start.elapsed().as_secs_f32();
 
     let descriptor = substance.descriptor(mesh, &atlas, opened.flat_normals);
-    let samples = arguments.samples.unwrap_or(output.samples());
+    let samples = arguments.samples.unwrap_or(output.format.samples());
     let translume = Translume::new(&gpu.device)?;
     let mut studio = Studio::new(&gpu, &translume, &descriptor, [camera.width, camera.height], samples)?;
+    let variations = albedo.map(|albedo| albedo.variations(mesh, &atlas));
+    studio.body_mut().set_variation(&gpu.queue, variations.as_deref())?;
     studio.body_mut().set_timings(arguments.timings);
     let camera = subject.look(&camera);
-    let develop = output.develop(scene.look.exposure);
+    let develop = output.format.develop(scene.look.exposure);
     let bar = progress::bar("render");
     bar.set_length(arguments.frames.into());
     let start = Instant::now();
@@ -125,6 +129,7 @@ fn overrule(scene: &mut Scene, arguments: &Render) -> Result<(), Error> {
         Medium::preset(name)?;
         (scene.medium, scene.material) = (Some(name.clone()), None);
     }
+    put(&mut scene.albedo, arguments.albedo.clone().map(Some));
     put(&mut scene.mm_per_unit, arguments.mm_per_unit.map(Some));
     put(&mut scene.lights, environment(arguments).map(Some));
     put(&mut scene.look.gloss, arguments.gloss);

@@ -22,12 +22,18 @@ pub enum Event {
         job: u64,
         result: Result<Box<(Scene, Arc<Loaded>)>, Error>,
     },
-    Shown(Result<Shown, Error>),
+    Shown(Result<Box<Shown>, Error>),
     /// Of the task with this number.
     Traced(u64, Result<Traced, Error>),
     Judged(u64, Result<Judged, Error>),
     /// A file was chosen in a dialogue.
     Chosen(Choice, PathBuf),
+    /// So many frames are there.
+    Exporting {
+        done: u32,
+    },
+    /// All frames are in files, or none where that was cancelled.
+    Exported(Result<Option<PathBuf>, Error>),
     /// A file is there.
     Written(Result<PathBuf, Error>),
 }
@@ -37,8 +43,11 @@ pub enum Event {
 pub enum Choice {
     Open,
     Environment,
+    Albedo,
     SaveScene,
     SavePicture,
+    SaveAnimation,
+    SaveSequence,
 }
 
 /// Where they tell it, and wake the window.

@@ -162,6 +162,7 @@ pub fn scene_of(name: &str, quality: Quality) -> Result<Wanted, Error> {
 
 fn place(scene: &mut Scene, path: &Path) {
     let absolute = |path: PathBuf| std::path::absolute(&path).unwrap_or(path);
+    scene.albedo = scene.albedo.take().map(absolute);
     let found = scene.shape.file(path);
     if let (Shape::Mesh { file, .. }, Some(found)) = (&mut scene.shape, found) {
         *file = absolute(found);

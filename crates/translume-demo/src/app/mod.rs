@@ -4,6 +4,8 @@
 //! they have done through [`events`]. What the picture shows is a [`Scene`], the same that `translume render --scene` takes.
 
 mod events;
+mod export;
+mod ground;
 mod loaded;
 mod orbit;
 mod panels;
@@ -18,6 +20,7 @@ use crate::scene::{Quality, Scene};
 use eframe::egui;
 use egui::util::undoer::Undoer;
 use events::{Choice, Event, Events};
+use export::{Exporting, Settings};
 use loaded::{Job, Loaded, Wanted};
 use playback::{Play, Playback};
 use serde::{Deserialize, Serialize};
@@ -45,6 +48,7 @@ struct Memory {
     scene: Option<Scene>,
     recent: Vec<PathBuf>,
     playback: Playback,
+    export: Settings,
 }
 
 /// What the window opens with.
@@ -59,6 +63,8 @@ pub struct App {
     scene: Scene,
     loaded: Option<Arc<Loaded>>,
     job: Option<Job>,
+    export: Settings,
+    exporting: Option<Exporting>,
     /// Whether the job's scene takes the place of all that is set, and not only of the model.
     replaces: bool,
     playback: Playback,
@@ -124,12 +130,14 @@ impl App {
     pub fn new(context: &eframe::CreationContext<'_>, name: Option<&str>) -> Self {
         let memory =
             context.storage.and_then(|storage| eframe::get_value::<Memory>(storage, eframe::APP_KEY));
-        let Memory { scene, recent, playback } = memory.unwrap_or_default();
+        let Memory { scene, recent, playback, export } = memory.unwrap_or_default();
         let (events, inbox) = Events::new(context.egui_ctx.clone());
         let mut app = Self {
             scene: Scene::of_model(FIRST),
             loaded: None,
             job: None,
+            export,
+            exporting: None,
             replaces: true,
             playback,
             recent,
@@ -172,11 +180,14 @@ impl App {
         app
     }
 
-    /// Opens a model or a scene, or takes a map of the sky for the light.
+    /// Opens a model or a scene, or takes a map of the sky for the light or a picture for the albedo.
     fn open(&mut self, name: &str) {
         let ending = Path::new(name).extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase());
         if matches!(ending.as_deref(), Some("exr" | "hdr")) {
             return panels::light_from(self, Path::new(name));
+        }
+        if matches!(ending.as_deref(), Some("png" | "jpg" | "jpeg")) {
+            return panels::albedo_from(self, Path::new(name));
         }
         match loaded::scene_of(name, self.quality()) {
             Ok(wanted) => {
@@ -296,6 +307,19 @@ impl App {
                 }
                 Event::Traced(..) | Event::Judged(..) => {}
                 Event::Chosen(choice, path) => panels::chosen(self, choice, &path),
+                Event::Exporting { done } => {
+                    if let Some(exporting) = &mut self.exporting {
+                        exporting.done = done;
+                    }
+                }
+                Event::Exported(result) => {
+                    self.exporting = None;
+                    match result {
+                        Ok(Some(path)) => self.notices.push(format!("{} is written", path.display())),
+                        Ok(None) => self.notices.push("nothing is written".to_owned()),
+                        Err(error) => self.trouble(&error),
+                    }
+                }
                 Event::Written(Ok(path)) => self.notices.push(format!("{} is written", path.display())),
                 Event::Written(Err(error)) => self.trouble(&error),
             }
@@ -406,7 +430,7 @@ impl App {
         let scene = Scene { camera: None, ..self.scene.clone() };
         match loaded.opened.subject(&scene, 1) {
             Ok(subject) => {
-                self.scene.camera = Some(crate::setup::camera(&scene, &subject, crate::setup::VIEW))
+                self.scene.camera = Some(crate::setup::camera(&scene, &subject, crate::setup::VIEW));
             }
             Err(error) => self.trouble(&error),
         }
@@ -455,7 +479,14 @@ impl eframe::App for App {
 
     fn save(&mut self, storage: &mut dyn eframe::Storage) {
         let scene = self.loaded.as_ref().map(|_| self.scene.clone());
-        let memory = Memory { scene, recent: self.recent.clone(), playback: self.playback };
+        let (recent, playback, export) = (self.recent.clone(), self.playback, self.export);
+        let memory = Memory { scene, recent, playback, export };
         eframe::set_value(storage, eframe::APP_KEY, &memory);
+    }
+
+    fn on_exit(&mut self) {
+        if let Some(exporting) = self.exporting.take() {
+            exporting.end();
+        }
     }
 }

@@ -2,6 +2,7 @@
 
 use super::events::{Event, Events};
 use super::loaded::Loaded;
+use crate::albedo;
 use crate::error::Error;
 use crate::gpu::Gpu;
 use crate::motion::Motion;
@@ -174,6 +175,8 @@ fn judge(scene: &Scene, loaded: &Loaded) -> Result<Judged, Error> {
     let exitance = |substance: &Substance| {
         let descriptor = substance.descriptor(&opened.model.mesh, &loaded.atlas, opened.flat_normals);
         let mut body = translume.create_body(&gpu.device, &descriptor)?;
+        let laid = (&opened.model.mesh, &loaded.atlas);
+        albedo::apply(&mut body, &gpu.queue, scene.albedo.as_deref(), laid)?;
         exitance(&gpu, &mut body, &frame)
     };
     let errors = overlay::errors(&exitance(&substance)?, &exitance(&exact)?);

@@ -1,8 +1,10 @@
 //! The picture, and the hands on it: the camera and the lights.
 
+use super::ground::Grounds;
+use super::loaded::Loaded;
 use super::panels::Beside;
 use super::{App, orbit};
-use crate::scene::{SceneCamera, SceneLight};
+use crate::scene::{Scene, SceneCamera, SceneLight};
 use eframe::egui;
 use egui::{Color32, Pos2, Rect, Sense, Stroke};
 use glam::{Vec2, Vec3};
@@ -20,13 +22,15 @@ pub struct Viewport {
     pixels_per_point: f32,
     /// The light in the hand, by its number.
     held: Option<usize>,
+    /// What it is put onto.
+    grounds: Grounds,
     /// Where the line between two pictures is, of the width.
     split: f32,
 }
 
 impl Default for Viewport {
     fn default() -> Self {
-        Self { rect: None, pixels_per_point: 1.0, held: None, split: 0.5 }
+        Self { rect: None, pixels_per_point: 1.0, held: None, grounds: Grounds::default(), split: 0.5 }
     }
 }
 
@@ -95,7 +99,9 @@ fn pictures(app: &mut App, ui: &mut egui::Ui, rect: Rect) {
 fn act(app: &mut App, ui: &egui::Ui, rect: Rect, response: &egui::Response) {
     let Some(camera) = app.scene.camera else { return };
     let Some(pixels) = app.view.pixels() else { return };
-    let frame = orbit::Frame::of(&orbit::shaped(camera, pixels));
+    let Some(loaded) = app.loaded.clone() else { return };
+    let seen = app.moment(&loaded, pixels);
+    let frame = orbit::Frame::of(&seen.camera.unwrap_or(camera));
     let pointer = response.interact_pointer_pos().or(response.hover_pos());
     let handles = handles(app, &frame, rect);
     if response.drag_started_by(egui::PointerButton::Primary)
@@ -107,6 +113,7 @@ fn act(app: &mut App, ui: &egui::Ui, rect: Rect, response: &egui::Response) {
     }
     if response.drag_stopped() {
         app.view.held = None;
+        app.view.grounds.clear();
     }
     let drag = response.drag_delta();
     if drag != egui::Vec2::ZERO {
@@ -115,7 +122,11 @@ fn act(app: &mut App, ui: &egui::Ui, rect: Rect, response: &egui::Response) {
             || ui.input(|input| input.modifiers.shift);
         let drag = Vec2::new(drag.x, drag.y);
         match (app.view.held, &mut app.scene.camera) {
-            (Some(light), _) => drag_light(app, light, &frame, drag / Vec2::new(rect.width(), rect.height())),
+            (Some(light), _) => {
+                if !put_onto(app, light, (&seen, &loaded), &frame, ui, (rect, pointer)) {
+                    drag_light(app, light, &frame, drag / Vec2::new(rect.width(), rect.height()));
+                }
+            }
             (None, Some(camera)) if is_panning => orbit::pan(camera, drag / rect.height()),
             (None, Some(camera)) => orbit::turn(camera, drag),
             (None, None) => {}
@@ -175,6 +186,26 @@ fn spot(light: &SceneLight, camera: &SceneCamera) -> Option<Vec3> {
     }
 }
 
+/// Onto the surface under the mouse, if that is asked for and known yet.
+fn put_onto(
+    app: &mut App,
+    light: usize,
+    (seen, loaded): (&Scene, &Loaded),
+    frame: &orbit::Frame,
+    ui: &egui::Ui,
+    (rect, pointer): (Rect, Option<Pos2>),
+) -> bool {
+    let is_asked = ui.input(|input| input.modifiers.command || input.modifiers.ctrl);
+    let (true, Some(pointer)) = (is_asked, pointer) else { return false };
+    let Some(ground) = app.view.grounds.of(seen, loaded, ui.ctx()) else { return false };
+    let place = (pointer - rect.min) / rect.size();
+    let point = frame.point(Vec2::new(place.x, place.y), frame.distance);
+    if let Some(light) = app.scene.lights.as_mut().and_then(|lights| lights.get_mut(light)) {
+        ground.put(light, frame.eye, point - frame.eye);
+    }
+    true
+}
+
 /// By so much of the picture, at the depth where it is; a direction turns.
 fn drag_light(app: &mut App, light: usize, frame: &orbit::Frame, drag: Vec2) {
     let Some(camera) = app.scene.camera else { return };
@@ -184,10 +215,10 @@ fn drag_light(app: &mut App, light: usize, frame: &orbit::Frame, drag: Vec2) {
     let target = Vec3::from(camera.target);
     match light {
         SceneLight::Point { position, .. } | SceneLight::Spot { position, .. } => {
-            *position = moved.to_array()
+            *position = moved.to_array();
         }
         SceneLight::Rectangle { center, .. } | SceneLight::Sphere { center, .. } => {
-            *center = moved.to_array()
+            *center = moved.to_array();
         }
         SceneLight::Directional { to_light: direction, .. } | SceneLight::CapEnv { axis: direction, .. } => {
             *direction = (moved - target).normalize_or(Vec3::Y).to_array();

@@ -1,7 +1,9 @@
 //! The GPU's thread: takes orders for pictures, the newest first, and never keeps the window waiting.
 
 use super::events::{Event, Events};
+use super::export::Export;
 use super::loaded::Loaded;
+use crate::albedo;
 use crate::develop::Developer;
 use crate::error::Error;
 use crate::framing::Subject;
@@ -14,9 +16,10 @@ use crate::scene::{Quality, Scene, SceneLight};
 use crate::setup::{Substance, VIEW, camera, library_lights};
 use crate::studio::Studio;
 use eframe::egui;
+use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::sync::mpsc::{Receiver, Sender, channel};
+use std::sync::mpsc::{Receiver, RecvError, Sender, TryRecvError, channel};
 use std::time::{Duration, Instant};
 use translume::{Camera, Frame, FrameTimings, Light, Lighting, Translume, View, readback};
 
@@ -26,6 +29,8 @@ pub enum Order {
     Show(Wish),
     /// A picture in a file.
     Write(Wish, Output, PathBuf),
+    /// Many pictures in files, one after another between those on the screen.
+    Export(Box<Export>),
 }
 
 /// A scene at a moment.
@@ -108,20 +113,36 @@ impl Worker {
     }
 }
 
+/// What has come, once something has if there is nothing else to do; fails where nothing can come any more.
+fn orders(inbox: &Receiver<Order>, is_idle: bool) -> Result<Vec<Order>, RecvError> {
+    let first = match inbox.try_recv() {
+        Ok(order) => Some(order),
+        Err(TryRecvError::Disconnected) => return Err(RecvError),
+        Err(TryRecvError::Empty) if is_idle => Some(inbox.recv()?),
+        Err(TryRecvError::Empty) => None,
+    };
+    Ok(first.into_iter().chain(inbox.try_iter()).collect())
+}
+
+/// The seat of what is exported.
+const EXPORT: usize = 2;
+
 /// What the thread owns.
 struct Easel {
     gpu: Gpu,
     translume: Translume,
     developer: Developer,
     painter: Painter,
-    /// Of the picture, and of the one beside it.
-    seats: [Option<Seat>; 2],
+    /// Of the picture, of the one beside it, and of what is exported.
+    seats: [Option<Seat>; 3],
 }
 
 /// A body on the GPU, and what it was made of.
 struct Seat {
     loaded: Arc<Loaded>,
     substance: Substance,
+    /// The texture that the body has.
+    albedo: Option<PathBuf>,
     lights: Lit,
     studio: Studio,
     outlines: Outlines,
@@ -138,24 +159,55 @@ impl Easel {
     fn new(gpu: Gpu) -> Result<Self, Error> {
         let translume = Translume::new(&gpu.device)?;
         let (developer, painter) = (Developer::new(&gpu.device), Painter::new(&gpu.device));
-        Ok(Self { gpu, translume, developer, painter, seats: [None, None] })
+        Ok(Self { gpu, translume, developer, painter, seats: [None, None, None] })
     }
 
     fn serve(mut self, inbox: &Receiver<Order>, events: &Events) {
-        while let Ok(first) = inbox.recv() {
+        let mut exports = VecDeque::new();
+        while let Ok(orders) = orders(inbox, exports.is_empty()) {
             let mut newest = None;
-            for order in std::iter::once(first).chain(inbox.try_iter()) {
+            for order in orders {
                 match order {
                     Order::Show(wish) => newest = Some(wish),
                     Order::Write(wish, output, path) => {
                         events.send(Event::Written(self.write(&wish, &output).map(|()| path)));
                     }
+                    Order::Export(export) => exports.push_back(export),
                 }
             }
             if let Some(wish) = newest {
-                events.send(Event::Shown(self.show(&wish)));
+                events.send(Event::Shown(self.show(&wish).map(Box::new)));
+            }
+            if let Some(export) = exports.pop_front() {
+                match self.export(export, events) {
+                    Ok(Some(export)) => exports.push_front(export),
+                    Ok(None) => {}
+                    Err(error) => events.send(Event::Exported(Err(error))),
+                }
+            }
+            if exports.is_empty() {
+                self.seats[EXPORT] = None;
             }
         }
+    }
+
+    /// Adds a frame; gives back what is not yet done.
+    fn export(&mut self, mut export: Box<Export>, events: &Events) -> Result<Option<Box<Export>>, Error> {
+        if export.is_cancelled() {
+            drop(export);
+            events.send(Event::Exported(Ok(None)));
+            return Ok(None);
+        }
+        let Some(wish) = export.next() else {
+            events.send(Event::Exported(Ok(Some(export.finish()?))));
+            return Ok(None);
+        };
+        self.draw(EXPORT, &wish, &wish.scene)?;
+        if let Some(seat) = &self.seats[EXPORT] {
+            let done = export.add(&seat.studio.picture(export.develop())?)?;
+            events.send(Event::Exporting { done });
+        }
+        Ok(Some(export))
     }
 
     fn show(&mut self, wish: &Wish) -> Result<Shown, Error> {
@@ -185,7 +237,7 @@ impl Easel {
                 None
             }
         };
-        Ok(Shown { image, other, atlas, timings, counters, took })
+        Ok(Shown { image, other, atlas, counters, timings, took })
     }
 
     fn develop(&mut self, seat: usize, wish: &Wish) -> Result<egui::ColorImage, Error> {
@@ -203,7 +255,9 @@ impl Easel {
     fn write(&mut self, wish: &Wish, output: &Output) -> Result<(), Error> {
         self.draw(0, wish, &wish.scene)?;
         match &self.seats[0] {
-            Some(seat) => output.write(&[seat.studio.picture(output.develop(wish.scene.look.exposure))?]),
+            Some(seat) => {
+                output.write(&[seat.studio.picture(output.format.develop(wish.scene.look.exposure))?])
+            }
             None => Ok(()),
         }
     }
@@ -227,7 +281,7 @@ impl Easel {
         let motion = Motion::new(&loaded.opened.model, &scene.wish(), 1)?;
         let subject = Subject::new(motion.points()?);
         let moment = motion.moment(0);
-        let seat = self.seat(seat, loaded, substance, *pixels, *samples)?;
+        let seat = self.seat(seat, loaded, (substance, &scene.albedo), *pixels, *samples)?;
         seat.lights.update(scene.lights.as_deref().unwrap_or_default(), loaded.opened.just_below_y0())?;
         let camera = subject.look(&camera(scene, &subject, VIEW));
         let is_one_picture = *moving && *overlay == Overlay::None;
@@ -248,13 +302,13 @@ impl Easel {
         &mut self,
         index: usize,
         loaded: &Arc<Loaded>,
-        substance: Substance,
+        (substance, albedo): (Substance, &Option<PathBuf>),
         pixels: [u32; 2],
         samples: u32,
     ) -> Result<&mut Seat, Error> {
         let slot = &mut self.seats[index];
         let fits = |seat: &mut Seat| seat.loaded.id == loaded.id && seat.substance.is_like(&substance);
-        let seat = match slot.take_if(fits) {
+        let mut seat = match slot.take_if(fits) {
             Some(mut seat) => {
                 seat.studio.resize(pixels, samples)?;
                 let body = seat.studio.body_mut();
@@ -269,9 +323,14 @@ impl Easel {
                 studio.body_mut().set_timings(true);
                 let outlines = Outlines::new(&self.gpu.device, atlas);
                 let lights = slot.take().map(|seat| seat.lights).unwrap_or_default();
-                Seat { loaded: Arc::clone(loaded), substance, lights, studio, outlines }
+                Seat { loaded: Arc::clone(loaded), substance, albedo: None, lights, studio, outlines }
             }
         };
+        if seat.albedo != *albedo {
+            let laid = (&loaded.opened.model.mesh, &loaded.atlas);
+            albedo::apply(seat.studio.body_mut(), &self.gpu.queue, albedo.as_deref(), laid)?;
+            seat.albedo.clone_from(albedo);
+        }
         Ok(slot.insert(seat))
     }
 }

@@ -41,6 +41,9 @@ pub struct Scene {
     /// A preset by name instead of `material`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub medium: Option<String>,
+    /// A PNG or JPEG on the mesh's own texture coordinates: how much of the light comes back.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub albedo: Option<PathBuf>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub lights: Option<Vec<SceneLight>>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -216,6 +219,7 @@ impl Scene {
         }
         let directory = path.parent().unwrap_or(Path::new(""));
         scene.lights.iter_mut().flatten().for_each(|light| light.find(directory));
+        scene.albedo = scene.albedo.map(|file| directory.join(file));
         Ok(scene)
     }
 
@@ -236,6 +240,7 @@ impl Scene {
             into: None,
             material: None,
             medium: Some("jade".to_owned()),
+            albedo: None,
             lights: None,
             camera: None,
             morph: Vec::new(),

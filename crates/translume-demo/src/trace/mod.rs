@@ -159,7 +159,7 @@ impl Outputs {
     }
 
     fn write(&self, estimate: &Estimate) -> Result<(), Error> {
-        let develop = self.picture.develop(self.exposure);
+        let develop = self.picture.format.develop(self.exposure);
         let picture = Picture::from_samples(&samples(estimate), estimate.width as u32, 1, develop);
         self.picture.write(&[picture])?;
         for (output, values) in [(&self.error, &estimate.error), (&self.single, &estimate.single)] {

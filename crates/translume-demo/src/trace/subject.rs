@@ -40,6 +40,10 @@ impl Subject {
     /// A scene whose model is known already. Spheres and boxes that nothing deforms are exact.
     pub fn new(scene: &Scene, opened: &Opened, width: Option<u32>) -> Result<Self, Error> {
         let Opened { model, flat_normals } = opened;
+        if let Some(path) = scene.albedo.clone() {
+            let problem = "paths of light know no albedo texture; remove `albedo` from the scene".to_owned();
+            return Err(Error::Texture { path, problem });
+        }
         let mm_per_unit = f64::from(scene.mm_per_unit());
         let wish = scene.wish();
         let motion = Motion::new(model, &wish, 1)?;

@@ -6,6 +6,7 @@
     reason = "a test may stop where it cannot go on, in its helpers too"
 )]
 
+mod albedo;
 mod desk;
 mod environment;
 mod methods;

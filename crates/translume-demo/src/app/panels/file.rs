@@ -12,6 +12,7 @@ use translume_mesh::builtin;
 
 const MODELS: &[&str] = &["obj", "gltf", "glb", "ply"];
 const MAPS: &[&str] = &["exr", "hdr"];
+const TEXTURES: &[&str] = &["png", "jpg", "jpeg"];
 
 pub fn menu(app: &mut App, ui: &mut egui::Ui) {
     egui::MenuBar::new().ui(ui, |ui| {
@@ -49,6 +50,14 @@ fn file(app: &mut App, ui: &mut egui::Ui) {
     if ui.button("Save picture…").clicked() {
         app.ask(Choice::SavePicture);
     }
+    ui.add_enabled_ui(app.exporting.is_none(), |ui| {
+        if ui.button("Save animation…").clicked() {
+            app.ask(Choice::SaveAnimation);
+        }
+        if ui.button("Save image sequence…").clicked() {
+            app.ask(Choice::SaveSequence);
+        }
+    });
     if ui.button("Save scene…").clicked() {
         app.ask(Choice::SaveScene);
     }
@@ -82,12 +91,15 @@ pub fn dialogue(choice: Choice) -> Option<PathBuf> {
     let dialogue = rfd::FileDialog::new();
     match choice {
         Choice::Open => {
-            let all = [MODELS, MAPS, &["json"]].concat();
-            dialogue.add_filter("models, scenes, skies", &all).pick_file()
+            let all = [MODELS, MAPS, TEXTURES, &["json"]].concat();
+            dialogue.add_filter("models, scenes, skies, textures", &all).pick_file()
         }
         Choice::Environment => dialogue.add_filter("skies", MAPS).pick_file(),
+        Choice::Albedo => dialogue.add_filter("textures", TEXTURES).pick_file(),
         Choice::SaveScene => dialogue.set_file_name("scene.json").save_file(),
         Choice::SavePicture => dialogue.set_file_name("picture.png").save_file(),
+        Choice::SaveAnimation => dialogue.set_file_name("morph.png").save_file(),
+        Choice::SaveSequence => dialogue.set_file_name("morph_%04d.png").save_file(),
     }
 }
 
@@ -96,8 +108,11 @@ pub fn chosen(app: &mut App, choice: Choice, path: &Path) {
     match choice {
         Choice::Open => app.open(&path.to_string_lossy()),
         Choice::Environment => super::light_from(app, path),
+        Choice::Albedo => super::albedo_from(app, path),
         Choice::SaveScene => save_scene(app, path),
         Choice::SavePicture => save_picture(app, path),
+        Choice::SaveAnimation => super::export::start(app, path, false),
+        Choice::SaveSequence => super::export::start(app, path, true),
     }
 }
 
@@ -128,7 +143,7 @@ fn save_picture(app: &mut App, path: &Path) {
         Ok(output) => {
             let scene = app.moment(&loaded, pixels);
             let (overlay, errors) = (Overlay::None, Arc::default());
-            let samples = output.samples();
+            let samples = output.format.samples();
             let wish = Wish { scene, loaded, pixels, samples, moving: false, overlay, errors, other: None };
             app.worker.order(Order::Write(wish, output, path.to_owned()));
         }

@@ -14,7 +14,7 @@ const SHORTCUTS: &[(Modifiers, Key, &str, Action)] = &[
     (Modifiers::COMMAND, Key::O, "open a model, a scene or a sky", |app, _| app.ask(Choice::Open)),
     (Modifiers::COMMAND, Key::S, "save the picture", |app, _| app.ask(Choice::SavePicture)),
     (Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::S, "save the scene", |app, _| {
-        app.ask(Choice::SaveScene)
+        app.ask(Choice::SaveScene);
     }),
     (Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::C, "copy the scene as JSON", file::copy),
     (Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::Z, "redo", |app, _| app.undo(true)),
@@ -29,6 +29,7 @@ const MOUSE: &[(&str, &str)] = &[
     ("wheel, pinch", "nearer and farther"),
     ("double click", "see all of the model"),
     ("drag a light's dot", "move the light"),
+    ("Ctrl drag a light's dot", "put the light onto the surface"),
     ("drop a file", "open it"),
 ];
 

@@ -1,9 +1,11 @@
 //! What the body is made of, and how it looks.
 
 use super::super::App;
+use super::super::events::Choice;
 use crate::scene::Material;
 use eframe::egui;
 use egui::{Color32, Slider};
+use std::path::Path;
 use translume::{Medium, Profile};
 
 const CHANNELS: [&str; 3] = ["red", "green", "blue"];
@@ -21,6 +23,7 @@ pub fn show(app: &mut App, ui: &mut egui::Ui) {
             }
         }
     });
+    albedo(app, ui);
     let mut edited = medium;
     ui.label("reduced scattering, 1/mm");
     coefficients(ui, &mut edited.sigma_s_prime);
@@ -40,6 +43,26 @@ pub fn edit(app: &mut App, change: impl FnOnce(&mut Medium)) {
     let g = app.scene.material.map_or(0.0, |material| material.g);
     app.scene.medium = None;
     app.scene.material = Some(Material { sigma_s_prime, sigma_a, g, eta: ior });
+}
+
+fn albedo(app: &mut App, ui: &mut egui::Ui) {
+    ui.horizontal_wrapped(|ui| {
+        if ui.button("Albedo texture…").clicked() {
+            app.ask(Choice::Albedo);
+        }
+        if let Some(file) = &app.scene.albedo {
+            ui.label(file.file_name().unwrap_or_default().to_string_lossy())
+                .on_hover_text(file.to_string_lossy());
+            if ui.small_button("remove").clicked() {
+                app.scene.albedo = None;
+            }
+        }
+    });
+}
+
+/// A picture on the model's texture coordinates.
+pub fn albedo_from(app: &mut App, path: &Path) {
+    app.scene.albedo = Some(std::path::absolute(path).unwrap_or_else(|_| path.to_owned()));
 }
 
 fn coefficients(ui: &mut egui::Ui, values: &mut [f32; 3]) {

@@ -1,6 +1,7 @@
 //! What stands around the picture.
 
 mod compare;
+mod export;
 mod file;
 mod frames;
 mod keys;
@@ -15,6 +16,7 @@ pub use file::{chosen, dialogue};
 pub use frames::Frames;
 pub use keys::keys;
 pub use light::light_from;
+pub use medium::albedo_from;
 
 use super::App;
 use eframe::egui;
@@ -35,6 +37,7 @@ pub fn show(app: &mut App, ui: &mut egui::Ui) {
         section(ui, "Quality", false, |ui| quality::show(app, ui));
         section(ui, "Behind the picture", false, |ui| compare::overlays(app, ui));
         section(ui, "Beside the picture", false, |ui| compare::beside(app, ui));
+        section(ui, "Export", false, |ui| export::show(app, ui));
         section(ui, "Timings", true, |ui| app.frames.show(ui));
     });
     compare::atlas(app, ui.ctx());

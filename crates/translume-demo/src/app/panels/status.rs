@@ -14,6 +14,14 @@ pub fn show(app: &mut App, ui: &mut egui::Ui) {
                 app.job = None;
             }
         }
+        if let Some(exporting) = &app.exporting {
+            let words = format!("frame {} of {}", exporting.done, exporting.total);
+            let share = exporting.done as f32 / exporting.total as f32;
+            ui.add(ProgressBar::new(share).text(words).desired_width(200.0));
+            if ui.button("Cancel export").clicked() {
+                exporting.cancel();
+            }
+        }
         match &app.adapter {
             None => ui.spinner(),
             Some(adapter) => {
