@@ -105,8 +105,9 @@ fn act(app: &mut App, ui: &egui::Ui, rect: Rect, response: &egui::Response) {
     let pointer = response.interact_pointer_pos().or(response.hover_pos());
     let handles = handles(app, &frame, rect);
     if response.drag_started_by(egui::PointerButton::Primary)
-        && let Some(pointer) = pointer
+        && let Some(pointer) = ui.input(|input| input.pointer.press_origin())
     {
+        // A drag is one only some way from where it began.
         let near = handles.iter().filter(|handle| handle.place.distance(pointer) < HANDLE);
         let nearest = near.min_by(|a, b| a.place.distance(pointer).total_cmp(&b.place.distance(pointer)));
         app.view.held = nearest.map(|handle| handle.light);

@@ -1,6 +1,6 @@
 //! Textures of albedo, as a picture shows them.
 
-use crate::desk::{Desk, read_exr, refused, translume};
+use crate::desk::{Desk, check_refusal, read_exr, refused, translume};
 
 /// A block whose texture coordinates are x and y of its front.
 const BLOCK: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n\
@@ -52,4 +52,8 @@ fn textures_that_cannot_be_are_named() {
     refused(&desk, &[&block, "--albedo", "gone.png"], &["gone.png", "cannot be read"]);
     refused(&desk, &[&block, "--albedo", &block], &["block.obj", "neither a PNG nor a JPEG"]);
     refused(&desk, &["creature", "--albedo", "gone.png"], &["creature", "texture coordinates", "remove"]);
+    let scene = r#"{ "shape": { "type": "mesh", "file": "block.obj" }, "albedo": "half.png" }"#;
+    let output = desk.path("out.exr");
+    let traced = translume(&["trace", &desk.file("scene.json", scene), "-o", output.to_str().unwrap()]);
+    check_refusal(&desk, &traced, &["half.png", "paths", "remove `albedo`"]).unwrap();
 }
