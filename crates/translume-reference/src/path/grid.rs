@@ -2,7 +2,9 @@
 
 use glam::{DVec3, IVec3};
 
+use super::Crossing;
 use crate::Surface;
+use crate::surface::Ray;
 
 /// Cells along the longest side of the grid.
 pub(super) const CELLS: f64 = 128.0;
@@ -16,7 +18,13 @@ pub(super) struct Grid {
     edge: f64,
     size: IVec3,
     steps: Vec<i8>,
+    /// Where each cell's triangles begin.
+    starts: Vec<u32>,
+    triangles: Vec<u32>,
 }
+
+/// A hair of a cell's edge, far more than numbers of cells are rounded by: cells hold what is so near.
+const HAIR: f64 = 1e-6;
 
 impl Grid {
     pub fn new(surface: &Surface) -> Self {
@@ -25,18 +33,35 @@ impl Grid {
         // One cell more on each side stays empty, so that the outside is connected.
         let low = low - 1.5 * edge;
         let size = ((high - low) / edge).as_ivec3() + 3;
-        let mut grid = Self { extent, low, edge, size, steps: Vec::new() };
-        let mut touched = vec![false; size.element_product() as usize];
-        grid.for_each_touched(surface, |cell| touched[cell] = true);
-        grid.steps = grid.distances(&touched);
+        let (steps, triangles) = (Vec::new(), Vec::new());
+        let starts = vec![0; size.element_product() as usize + 1];
+        let mut grid = Self { extent, low, edge, size, steps, starts, triangles };
+        grid.fill(surface);
+        grid.steps = grid.distances();
         grid.tell_sides(surface);
         grid
     }
 
+    fn fill(&mut self, surface: &Surface) {
+        let mut starts = std::mem::take(&mut self.starts);
+        self.for_each_touched(surface, |cell, _| starts[cell] += 1);
+        let mut sum = 0;
+        for start in &mut starts {
+            sum += *start;
+            *start = sum;
+        }
+        let mut triangles = vec![0; sum as usize];
+        // From the end of each cell's list to its start.
+        self.for_each_touched(surface, |cell, triangle| {
+            starts[cell] -= 1;
+            triangles[starts[cell] as usize] = triangle;
+        });
+        (self.starts, self.triangles) = (starts, triangles);
+    }
+
     /// Calls `each` for cells that a triangle's box and its plane pass through.
-    fn for_each_touched(&self, surface: &Surface, mut each: impl FnMut(usize)) {
-        // A hair wider, for the rounding of cell numbers.
-        let hair = 1e-9 * self.edge;
+    fn for_each_touched(&self, surface: &Surface, mut each: impl FnMut(usize, u32)) {
+        let hair = HAIR * self.edge;
         for triangle in 0..surface.triangles.len() as u32 {
             let [a, b, c] = surface.corners(triangle);
             let normal = (b - a).cross(c - a);
@@ -45,7 +70,7 @@ impl Grid {
             let last = self.cell(a.max(b).max(c) + hair);
             for_each_cell(first, last, |cell| {
                 if normal.dot(self.middle(cell) - a).abs() <= reach {
-                    each(self.index(cell));
+                    each(self.index(cell), triangle);
                 }
             });
         }
@@ -87,10 +112,54 @@ impl Grid {
         (steps - 1.0 + inset) * self.edge
     }
 
+    /// The first crossing towards the outside from a point of the body, no further than `within`: from cell to cell, and over as many at
+    /// a time as are not touched.
+    pub fn first_out(
+        &self,
+        surface: &Surface,
+        origin: DVec3,
+        direction: DVec3,
+        within: f64,
+    ) -> Option<Crossing> {
+        let ray = Ray::new(origin, direction);
+        let (place, step) = ((origin - self.low) / self.edge, direction / self.edge);
+        let rising = direction.cmpge(DVec3::ZERO);
+        let inverse = 1.0 / DVec3::select(step.cmpeq(DVec3::ZERO), DVec3::splat(f64::MIN_POSITIVE), step);
+        let (mut closest, mut limit, mut t) = (None, within, 0.0);
+        while t <= limit {
+            let cell = (place + step * t).floor().as_ivec3();
+            if !self.holds(cell) {
+                break;
+            }
+            let index = self.index(cell);
+            let steps = i32::from(self.steps[index]).abs();
+            if steps == 0 {
+                for &triangle in &self.triangles[self.starts[index] as usize..self.starts[index + 1] as usize]
+                {
+                    let corners @ [a, b, c] = surface.corners(triangle);
+                    let Some((t, _)) = ray.meets_triangle(corners).filter(|(t, _)| (0.0..=limit).contains(t))
+                    else {
+                        continue;
+                    };
+                    let normal = (b - a).cross(c - a);
+                    if normal.dot(direction) > 0.0 {
+                        (closest, limit) = (Some(Crossing { t, normal }), t);
+                    }
+                }
+            }
+            // Beyond all cells that are as near as this without being touched.
+            let reach = (steps - 1).max(0);
+            let end = DVec3::select(rising, (cell + 1 + reach).as_dvec3(), (cell - reach).as_dvec3());
+            t = t.max(((end - place) * inverse).min_element()) + 0.1 * HAIR * self.edge;
+        }
+        closest.map(|crossing| Crossing { normal: crossing.normal.normalize_or_zero(), ..crossing })
+    }
+
     /// Steps from each cell to a touched one: a pass in the order of the cells and one back, each from half of the neighbours
     /// (Rosenfeld and Pfaltz 1966).
-    fn distances(&self, touched: &[bool]) -> Vec<i8> {
-        let mut steps: Vec<i8> = touched.iter().map(|&touched| if touched { 0 } else { i8::MAX }).collect();
+    fn distances(&self) -> Vec<i8> {
+        let from = |ends: &[u32]| if ends[0] < ends[1] { 0 } else { i8::MAX };
+        let mut steps: Vec<i8> = self.starts.windows(2).map(from).collect();
         let neighbours: Vec<IVec3> =
             (0..13).map(|k| IVec3::new(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1)).collect();
         let cells: Vec<IVec3> = self.cells().collect();

@@ -90,9 +90,8 @@ impl Photons {
         for path in paths {
             let mut dice = Dice::new([seed, STREAM - self.era, path, self.group as u64]);
             let (ray, cell) = self.guide.emit(tracer, &mut dice);
-            let region = tracer.lamps[Guide::lamp(cell)].region();
             let group = &tracer.groups[self.group];
-            let steps = tracer.shine(group, (&ray, region), &mut dice, (film, &mut found));
+            let steps = tracer.shine(group, (&ray, Guide::lamp(cell)), &mut dice, (film, &mut found));
             merge(&mut found, &mut part.splats);
             part.paths.push(Path { cell, steps, end: part.splats.len() });
         }
