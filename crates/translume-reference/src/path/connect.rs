@@ -49,7 +49,9 @@ impl Walk<'_> {
         let Some(aim) = lamp.aim(self.origin, self.dice) else {
             return;
         };
-        let way = Way { origin: self.origin, direction: aim.direction, distance: aim.distance, fan };
+        let clearance = self.clearance;
+        let way =
+            Way { origin: self.origin, direction: aim.direction, distance: aim.distance, clearance, fan };
         let Some(Passage { inside, last, share }) = self.pass(&way) else {
             return;
         };
@@ -73,8 +75,9 @@ impl Walk<'_> {
         let Some(view) = film.view(self.origin) else {
             return;
         };
-        let fan = film.fan.as_ref();
-        let way = Way { origin: self.origin, direction: view.direction, distance: view.distance, fan };
+        let (clearance, fan) = (self.clearance, film.fan.as_ref());
+        let way =
+            Way { origin: self.origin, direction: view.direction, distance: view.distance, clearance, fan };
         let Some(Passage { share, .. }) = self.pass(&way) else {
             return;
         };

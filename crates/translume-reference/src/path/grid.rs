@@ -1,6 +1,6 @@
 //! Cells around a mesh that tell how far away its surface is at least.
 
-use glam::{DVec3, IVec3};
+use glam::{DVec3, IVec3, Vec3};
 
 use super::Crossing;
 use crate::Surface;
@@ -16,12 +16,54 @@ pub(super) struct Grid {
     pub extent: [DVec3; 2],
     low: DVec3,
     edge: f64,
+    /// Cells per mm.
+    scale: f64,
     size: IVec3,
+    /// Cells are kept in blocks of 4³, as who asks for one soon asks for its neighbours: so many to the right and up.
+    blocks: [i32; 2],
+    /// The size as a place.
+    end: DVec3,
     steps: Vec<i8>,
     /// Where each cell's triangles begin.
     starts: Vec<u32>,
-    triangles: Vec<u32>,
+    triangles: Vec<Facet>,
 }
+
+/// A triangle and its plane, in single precision: most triangles of a cell need no closer look.
+#[derive(Clone, Copy, Default)]
+struct Facet {
+    /// Unit normal, outwards.
+    normal: Vec3,
+    /// Along it from the grid's lowest corner, in cells.
+    height: f32,
+    triangle: u32,
+}
+
+/// A ray as facets need it, in single precision.
+struct Sight {
+    place: Vec3,
+    direction: Vec3,
+    leaving: bool,
+}
+
+impl Sight {
+    fn new(place: DVec3, direction: DVec3, leaving: bool) -> Self {
+        Self { place: place.as_vec3(), direction: direction.as_vec3(), leaving }
+    }
+
+    /// Whether the ray crosses a facet's plane the right way within so many cells, as far as single precision can tell.
+    #[inline]
+    fn may_cross(&self, facet: &Facet, reach: f32) -> bool {
+        let side = if self.leaving { 1.0 } else { -1.0 };
+        let speed = side * facet.normal.dot(self.direction);
+        let before = side * (facet.height - facet.normal.dot(self.place));
+        speed > -BLUR && before > -FAR && before - speed * reach < FAR
+    }
+}
+
+/// Roundings of a cosine, and of a height in cells: 2⁻²⁴ of some hundred cells, a few times.
+const BLUR: f32 = 1e-6;
+const FAR: f32 = 1e-3;
 
 /// A hair of a cell's edge, far more than numbers of cells are rounded by: cells hold what is so near.
 const HAIR: f64 = 1e-6;
@@ -34,8 +76,11 @@ impl Grid {
         let low = low - 1.5 * edge;
         let size = ((high - low) / edge).as_ivec3() + 3;
         let (steps, triangles) = (Vec::new(), Vec::new());
-        let starts = vec![0; size.element_product() as usize + 1];
-        let mut grid = Self { extent, low, edge, size, steps, starts, triangles };
+        let blocks = (size + 3) / 4;
+        let starts = vec![0; 64 * blocks.element_product() as usize + 1];
+        let (scale, end) = (1.0 / edge, size.as_dvec3());
+        let blocks = [blocks.x, blocks.y];
+        let mut grid = Self { extent, low, edge, scale, size, blocks, end, steps, starts, triangles };
         grid.fill(surface);
         grid.steps = grid.distances();
         grid.tell_sides(surface);
@@ -50,13 +95,20 @@ impl Grid {
             sum += *start;
             *start = sum;
         }
-        let mut triangles = vec![0; sum as usize];
+        let mut triangles = vec![Facet::default(); sum as usize];
         // From the end of each cell's list to its start.
         self.for_each_touched(surface, |cell, triangle| {
             starts[cell] -= 1;
-            triangles[starts[cell] as usize] = triangle;
+            triangles[starts[cell] as usize] = self.facet(surface, triangle);
         });
         (self.starts, self.triangles) = (starts, triangles);
+    }
+
+    fn facet(&self, surface: &Surface, triangle: u32) -> Facet {
+        let [a, b, c] = surface.corners(triangle);
+        let normal = (b - a).cross(c - a).normalize_or_zero();
+        let height = normal.dot(self.place(a)) as f32;
+        Facet { normal: normal.as_vec3(), height, triangle }
     }
 
     /// Calls `each` for cells that a triangle's box and its plane pass through.
@@ -81,28 +133,43 @@ impl Grid {
     }
 
     fn cell(&self, point: DVec3) -> IVec3 {
-        ((point - self.low) / self.edge).floor().as_ivec3()
+        self.place(point).floor().as_ivec3()
     }
 
     fn index(&self, cell: IVec3) -> usize {
-        ((cell.z * self.size.y + cell.y) * self.size.x + cell.x) as usize
+        let (block, within): (IVec3, IVec3) = (cell >> 2, cell & 3);
+        let IVec3 { x, y, z } = within;
+        let block = (block.z * self.blocks[1] + block.y) * self.blocks[0] + block.x;
+        (block << 6 | z << 4 | y << 2 | x) as usize
     }
 
     fn holds(&self, cell: IVec3) -> bool {
         cell.cmpge(IVec3::ZERO).all() && cell.cmplt(self.size).all()
     }
 
+    /// In cells.
+    fn place(&self, point: DVec3) -> DVec3 {
+        (point - self.low) * self.scale
+    }
+
+    /// The cell of a place; `None` beside the grid.
+    #[inline]
+    fn cell_at(&self, place: DVec3) -> Option<IVec3> {
+        // Where nothing is negative, rounding towards zero is rounding down.
+        let is_inside = place.cmpge(DVec3::ZERO).all() && place.cmplt(self.end).all();
+        is_inside.then(|| IVec3::new(place.x as i32, place.y as i32, place.z as i32))
+    }
+
+    pub fn contains(&self, point: DVec3) -> bool {
+        self.cell_at(self.place(point)).is_some()
+    }
+
     /// As that of the body.
     pub fn clearance(&self, point: DVec3) -> f64 {
-        let place = (point - self.low) / self.edge;
-        // Rounding towards zero is rounding down from here on; casts saturate, and what is not a number is below nothing.
-        if place.cmplt(DVec3::ZERO).any() {
+        let place = self.place(point);
+        let Some(cell) = self.cell_at(place) else {
             return -1.0;
-        }
-        let cell = IVec3::new(place.x as i32, place.y as i32, place.z as i32);
-        if cell.cmpge(self.size).any() {
-            return -1.0;
-        }
+        };
         let steps = f64::from(self.steps[self.index(cell)]);
         if steps <= 0.0 {
             return steps;
@@ -112,44 +179,45 @@ impl Grid {
         (steps - 1.0 + inset) * self.edge
     }
 
-    /// The first crossing towards the outside from a point of the body, no further than `within`: from cell to cell, and over as many at
-    /// a time as are not touched.
-    pub fn first_out(
+    /// The first crossing towards the outside (`leaving`) or towards the inside, no further than `within`, from a point that the grid
+    /// holds: from cell to cell, and over as many at a time as are not touched.
+    pub fn first(
         &self,
         surface: &Surface,
-        origin: DVec3,
-        direction: DVec3,
+        (origin, direction): (DVec3, DVec3),
+        leaving: bool,
         within: f64,
     ) -> Option<Crossing> {
         let ray = Ray::new(origin, direction);
-        let (place, step) = ((origin - self.low) / self.edge, direction / self.edge);
+        let sight = Sight::new(self.place(origin), direction, leaving);
+        let (place, step) = (self.place(origin), direction * self.scale);
         let rising = direction.cmpge(DVec3::ZERO);
         let inverse = 1.0 / DVec3::select(step.cmpeq(DVec3::ZERO), DVec3::splat(f64::MIN_POSITIVE), step);
         let (mut closest, mut limit, mut t) = (None, within, 0.0);
         while t <= limit {
-            let cell = (place + step * t).floor().as_ivec3();
-            if !self.holds(cell) {
+            let Some(cell) = self.cell_at(place + step * t) else {
                 break;
-            }
+            };
             let index = self.index(cell);
             let steps = i32::from(self.steps[index]).abs();
-            if steps == 0 {
-                for &triangle in &self.triangles[self.starts[index] as usize..self.starts[index + 1] as usize]
-                {
-                    let corners @ [a, b, c] = surface.corners(triangle);
-                    let Some((t, _)) = ray.meets_triangle(corners).filter(|(t, _)| (0.0..=limit).contains(t))
-                    else {
-                        continue;
-                    };
-                    let normal = (b - a).cross(c - a);
-                    if normal.dot(direction) > 0.0 {
-                        (closest, limit) = (Some(Crossing { t, normal }), t);
-                    }
+            let touching =
+                if steps == 0 { self.starts[index] as usize..self.starts[index + 1] as usize } else { 0..0 };
+            // Far enough, as the grid is smaller.
+            let reach = (limit * self.scale).min(4.0 * CELLS) as f32;
+            for facet in self.triangles[touching].iter().filter(|facet| sight.may_cross(facet, reach)) {
+                let corners @ [a, b, c] = surface.corners(facet.triangle);
+                let Some((t, _)) = ray.meets_triangle(corners).filter(|(t, _)| (0.0..=limit).contains(t))
+                else {
+                    continue;
+                };
+                let normal = (b - a).cross(c - a);
+                if (normal.dot(direction) > 0.0) == leaving {
+                    (closest, limit) = (Some(Crossing { t, normal }), t);
                 }
             }
             // Beyond all cells that are as near as this without being touched.
-            let reach = (steps - 1).max(0);
-            let end = DVec3::select(rising, (cell + 1 + reach).as_dvec3(), (cell - reach).as_dvec3());
+            let around = (steps - 1).max(0);
+            let end = DVec3::select(rising, (cell + 1 + around).as_dvec3(), (cell - around).as_dvec3());
             t = t.max(((end - place) * inverse).min_element()) + 0.1 * HAIR * self.edge;
         }
         closest.map(|crossing| Crossing { normal: crossing.normal.normalize_or_zero(), ..crossing })

@@ -91,8 +91,8 @@ impl Shape for Closed<'_> {
             });
             return closest.filter(|crossing| crossing.t <= within);
         }
-        if leaving {
-            return self.grid.first_out(self.surface, origin, direction, within);
+        if self.grid.contains(origin) {
+            return self.grid.first(self.surface, (origin, direction), leaving, within);
         }
         self.surface.every_hit(origin.to_array(), direction.to_array(), within, |hit, normal| {
             if (normal.dot(direction) > 0.0) == leaving {

@@ -64,6 +64,8 @@ pub(super) struct Walk<'a> {
     pub direction: DVec3,
     pub travelled: f64,
     pub inside: f64,
+    /// A lower bound of the distance from there to the boundary, mm.
+    pub clearance: f64,
     /// Density with which the last collision chose the direction, 1/sr.
     pub density: f64,
 }
@@ -108,6 +110,7 @@ impl PathTracer<'_> {
             direction: ray.direction,
             travelled: 0.0,
             inside: 0.0,
+            clearance: 0.0,
             density: 0.0,
         };
         if self.is_matched() {
@@ -123,7 +126,13 @@ impl Walk<'_> {
     /// The first collision on the straight way through an index-matched body. Light that does not collide is not part of the picture,
     /// so the collision is certain and weighs as much as it is probable.
     fn collide_ahead(&mut self, fan: Option<&Fan>) {
-        let way = Way { origin: self.origin, direction: self.direction, distance: f64::INFINITY, fan };
+        let way = Way {
+            origin: self.origin,
+            direction: self.direction,
+            distance: f64::INFINITY,
+            clearance: 0.0,
+            fan,
+        };
         let mut met = Vec::new();
         crossings(self.tracer.shape, &way, &mut |crossing| met.push(crossing));
         self.harvest.met = !met.is_empty();
@@ -183,6 +192,7 @@ impl Walk<'_> {
                 }
                 self.weight = self.weight.map(|weight| weight * LIGHT / heaviest);
             }
+            self.clearance = self.tracer.shape.clearance(self.origin);
             if self.tracer.is_matched() {
                 self.connect();
             }
@@ -202,13 +212,12 @@ impl Walk<'_> {
         let shape = self.tracer.shape;
         for _ in 0..MOST_CROSSINGS {
             if is_inside {
-                let at = self.at();
-                if left < shape.clearance(at) {
+                if self.travelled == 0.0 && left < self.clearance {
                     self.place(self.travelled + left);
                     return true;
                 }
                 self.harvest.work += RAY;
-                let Some(crossing) = shape.first(at, self.direction, true, left) else {
+                let Some(crossing) = shape.first(self.at(), self.direction, true, left) else {
                     self.place(self.travelled + left);
                     // Rounding can leave a path outside of a sharp edge, one in billions.
                     return shape.clearance(self.origin) >= 0.0;
@@ -274,6 +283,6 @@ impl Walk<'_> {
     }
 
     fn place_at(&mut self, to: DVec3) {
-        (self.origin, self.travelled, self.inside) = (to, 0.0, 0.0);
+        (self.origin, self.travelled, self.inside, self.clearance) = (to, 0.0, 0.0, 0.0);
     }
 }

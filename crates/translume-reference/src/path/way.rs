@@ -33,6 +33,8 @@ pub(super) struct Way<'a> {
     pub direction: DVec3,
     /// mm; infinite for a light that is a direction.
     pub distance: f64,
+    /// A lower bound of the distance from its origin to the boundary, mm.
+    pub clearance: f64,
     /// Of the ways to the same point or along the same direction.
     pub fan: Option<&'a Fan>,
 }
@@ -73,7 +75,7 @@ pub(super) fn inside(shape: &dyn Shape, way: &Way<'_>) -> [f64; 2] {
 pub(super) fn surely_inside(shape: &dyn Shape, way: &Way<'_>, [step, enough]: [f64; 2]) -> f64 {
     let (mut length, mut end, mut t) = (0.0, 0.0, 0.0);
     for _ in 0..PROBES {
-        let radius = shape.clearance(way.at(t)).max(0.0);
+        let radius = if t > 0.0 { shape.clearance(way.at(t)) } else { way.clearance }.max(0.0);
         let (from, to) = ((t - radius).max(end), (t + radius).min(way.distance));
         if to > from {
             length += to - from;
@@ -107,7 +109,7 @@ mod tests {
     use crate::testing::octasphere;
 
     fn up(origin: DVec3) -> Way<'static> {
-        Way { origin, direction: DVec3::Y, distance: f64::INFINITY, fan: None }
+        Way { origin, direction: DVec3::Y, distance: f64::INFINITY, clearance: 0.0, fan: None }
     }
 
     /// The bound stays below the way inside, and is a good part of it where that is long.
@@ -127,7 +129,11 @@ mod tests {
             let [length, _] = inside(&mesh, &up(point));
             // Facets of level 5 lie within 0.06 % of the radius; along the surface that is more.
             assert!((length - exact).abs() < 0.05, "{length} {exact}");
-            let bound = surely_inside(&mesh, &up(point), [0.5, f64::INFINITY]);
+            let bound = surely_inside(
+                &mesh,
+                &Way { clearance: mesh.clearance(point), ..up(point) },
+                [0.5, f64::INFINITY],
+            );
             assert!(bound <= length, "{bound} {length}");
             (bounds, lengths) = (bounds + bound, lengths + length);
         }
