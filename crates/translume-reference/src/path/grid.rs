@@ -1,8 +1,9 @@
 //! Cells around a mesh that tell how far away its surface is at least.
 
-use glam::{DVec3, IVec3, Vec3};
+use glam::{DVec3, IVec3};
 
 use super::Crossing;
+use super::facet::{Facet, Sight};
 use crate::Surface;
 use crate::surface::Ray;
 
@@ -28,42 +29,6 @@ pub(super) struct Grid {
     starts: Vec<u32>,
     triangles: Vec<Facet>,
 }
-
-/// A triangle and its plane, in single precision: most triangles of a cell need no closer look.
-#[derive(Clone, Copy, Default)]
-struct Facet {
-    /// Unit normal, outwards.
-    normal: Vec3,
-    /// Along it from the grid's lowest corner, in cells.
-    height: f32,
-    triangle: u32,
-}
-
-/// A ray as facets need it, in single precision.
-struct Sight {
-    place: Vec3,
-    direction: Vec3,
-    leaving: bool,
-}
-
-impl Sight {
-    fn new(place: DVec3, direction: DVec3, leaving: bool) -> Self {
-        Self { place: place.as_vec3(), direction: direction.as_vec3(), leaving }
-    }
-
-    /// Whether the ray crosses a facet's plane the right way within so many cells, as far as single precision can tell.
-    #[inline]
-    fn may_cross(&self, facet: &Facet, reach: f32) -> bool {
-        let side = if self.leaving { 1.0 } else { -1.0 };
-        let speed = side * facet.normal.dot(self.direction);
-        let before = side * (facet.height - facet.normal.dot(self.place));
-        speed > -BLUR && before > -FAR && before - speed * reach < FAR
-    }
-}
-
-/// Roundings of a cosine, and of a height in cells: 2⁻²⁴ of some hundred cells, a few times.
-const BLUR: f32 = 1e-6;
-const FAR: f32 = 1e-3;
 
 /// A hair of a cell's edge, far more than numbers of cells are rounded by: cells hold what is so near.
 const HAIR: f64 = 1e-6;
@@ -99,16 +64,10 @@ impl Grid {
         // From the end of each cell's list to its start.
         self.for_each_touched(surface, |cell, triangle| {
             starts[cell] -= 1;
-            triangles[starts[cell] as usize] = self.facet(surface, triangle);
+            triangles[starts[cell] as usize] =
+                Facet::new(surface.corners(triangle).map(|corner| self.place(corner)), triangle);
         });
         (self.starts, self.triangles) = (starts, triangles);
-    }
-
-    fn facet(&self, surface: &Surface, triangle: u32) -> Facet {
-        let [a, b, c] = surface.corners(triangle);
-        let normal = (b - a).cross(c - a).normalize_or_zero();
-        let height = normal.dot(self.place(a)) as f32;
-        Facet { normal: normal.as_vec3(), height, triangle }
     }
 
     /// Calls `each` for cells that a triangle's box and its plane pass through.
@@ -296,4 +255,61 @@ fn contains(surface: &Surface, point: DVec3) -> bool {
         f64::INFINITY
     });
     sum > 0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::dice::Dice;
+    use crate::testing::octasphere;
+
+    /// The first crossing by the tree.
+    fn by_tree(
+        surface: &Surface,
+        [origin, direction]: [DVec3; 2],
+        leaving: bool,
+        within: f64,
+    ) -> Option<f64> {
+        let mut closest = None;
+        surface.every_hit(origin.to_array(), direction.to_array(), within, |hit, normal| {
+            if (normal.dot(direction) > 0.0) == leaving {
+                closest = Some(hit.t);
+            }
+            closest.unwrap_or(within)
+        });
+        closest
+    }
+
+    /// Rays whose first crossing from cell to cell is not that by the tree, and those that have one.
+    fn differing(surface: &Surface, grid: &Grid) -> [usize; 2] {
+        let mut dice = Dice::new([3; 4]);
+        let mut random = || DVec3::new(dice.roll(), dice.roll(), dice.roll()) * 6.0 - 3.0;
+        let (mut differing, mut count) = (0, 0);
+        for k in 0..6000 {
+            let origin = random();
+            // Through a corner every other time, which six triangles share.
+            let corner = DVec3::from(surface.positions[k * 31 % surface.positions.len()]);
+            let target = if k % 2 == 0 { corner } else { random() };
+            let (direction, leaving) = ((target - origin).normalize(), k % 3 == 0);
+            let within = if k % 5 == 0 { f64::INFINITY } else { random().length() };
+            let tree = by_tree(surface, [origin, direction], leaving, within);
+            let found = grid.first(surface, (origin, direction), leaving, within).map(|crossing| crossing.t);
+            differing += usize::from(tree != found);
+            count += usize::from(tree.is_some());
+        }
+        [differing, count]
+    }
+
+    /// To the last bit.
+    #[test]
+    fn first_crossings_are_those_of_the_tree() {
+        let (positions, triangles) = octasphere(3.0, 5);
+        let surface = Surface::flat(positions, triangles);
+        let mut grid = Grid::new(&surface);
+        let [differing_rays, count] = differing(&surface, &grid);
+        assert!(differing_rays == 0 && count > 1000, "{differing_rays} {count}");
+        // Every hundredth facet somewhere else.
+        grid.triangles.iter_mut().step_by(100).for_each(|facet| facet.triangle = 0);
+        assert!(differing(&surface, &grid)[0] > 0, "damage must be noticed");
+    }
 }

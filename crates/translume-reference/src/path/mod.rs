@@ -16,6 +16,7 @@
 mod connect;
 mod emit;
 mod estimate;
+mod facet;
 mod fan;
 mod film;
 mod grid;
