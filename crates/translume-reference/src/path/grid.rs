@@ -147,7 +147,7 @@ impl Grid {
         leaving: bool,
         within: f64,
     ) -> Option<Crossing> {
-        let ray = Ray::new(origin, direction);
+        let mut ray = None;
         let sight = Sight::new(self.place(origin), direction, leaving);
         let (place, step) = (self.place(origin), direction * self.scale);
         let rising = direction.cmpge(DVec3::ZERO);
@@ -165,6 +165,8 @@ impl Grid {
             let reach = (limit * self.scale).min(4.0 * CELLS) as f32;
             for facet in self.triangles[touching].iter().filter(|facet| sight.may_cross(facet, reach)) {
                 let corners @ [a, b, c] = surface.corners(facet.triangle);
+                // Most rays need none.
+                let ray = ray.get_or_insert_with(|| Ray::new(origin, direction));
                 let Some((t, _)) = ray.meets_triangle(corners).filter(|(t, _)| (0.0..=limit).contains(t))
                 else {
                     continue;

@@ -74,7 +74,7 @@ impl Shape for Closed<'_> {
 
     fn crossings_seen(&self, fan: &Fan, origin: DVec3, direction: DVec3, found: &mut dyn FnMut(Crossing)) {
         let ray = Ray::new(origin, direction);
-        for &triangle in fan.ahead(origin, direction) {
+        for triangle in fan.ahead(origin, direction) {
             let corners @ [a, b, c] = self.surface.corners(triangle);
             if let Some((t, _)) = ray.meets_triangle(corners).filter(|(t, _)| *t >= 0.0) {
                 found(Crossing { t, normal: (b - a).cross(c - a).normalize_or_zero() });
