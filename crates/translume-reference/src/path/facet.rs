@@ -6,21 +6,19 @@ use glam::{DVec3, Vec3};
 const BLUR: f32 = 1e-6;
 const FAR: f32 = 1e-3;
 
-/// A triangle and its plane, in a grid's cells.
-#[derive(Clone, Copy, Default)]
+/// The plane of a triangle, in a grid's cells.
 pub(super) struct Facet {
     /// Unit normal, outwards.
     normal: Vec3,
     /// Along it from the grid's lowest corner, in cells.
     height: f32,
-    pub triangle: u32,
 }
 
 impl Facet {
     /// Of corners in cells.
-    pub fn new([a, b, c]: [DVec3; 3], triangle: u32) -> Self {
+    pub fn new([a, b, c]: [DVec3; 3]) -> Self {
         let normal = (b - a).cross(c - a).normalize_or_zero();
-        Self { normal: normal.as_vec3(), height: normal.dot(a) as f32, triangle }
+        Self { normal: normal.as_vec3(), height: normal.dot(a) as f32 }
     }
 }
 

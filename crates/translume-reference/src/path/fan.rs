@@ -6,10 +6,10 @@ use crate::Surface;
 use crate::lights::strata::frame;
 
 /// Cells for each triangle.
-const DENSITY: f64 = 4.0;
+const DENSITY: f64 = 2.0;
 
 /// Entries for each triangle that are not too many; long triangles take fewer cells.
-const MOST: usize = 32;
+const MOST: usize = 16;
 
 /// Least cosine of the angle between the axis and a corner: 73°.
 const NARROW: f64 = 0.3;

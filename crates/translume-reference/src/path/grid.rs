@@ -27,7 +27,9 @@ pub(super) struct Grid {
     steps: Vec<i8>,
     /// Where each cell's triangles begin.
     starts: Vec<u32>,
-    triangles: Vec<Facet>,
+    triangles: Vec<u32>,
+    /// Of every triangle.
+    facets: Vec<Facet>,
 }
 
 /// A hair of a cell's edge, far more than numbers of cells are rounded by: cells hold what is so near.
@@ -40,12 +42,12 @@ impl Grid {
         // One cell more on each side stays empty, so that the outside is connected.
         let low = low - 1.5 * edge;
         let size = ((high - low) / edge).as_ivec3() + 3;
-        let (steps, triangles) = (Vec::new(), Vec::new());
+        let (steps, triangles, facets) = (Vec::new(), Vec::new(), Vec::new());
         let blocks = (size + 3) / 4;
         let starts = vec![0; 64 * blocks.element_product() as usize + 1];
         let (scale, end) = (1.0 / edge, size.as_dvec3());
         let blocks = [blocks.x, blocks.y];
-        let mut grid = Self { extent, low, edge, scale, size, blocks, end, steps, starts, triangles };
+        let mut grid = Self { extent, low, edge, scale, size, blocks, end, steps, starts, triangles, facets };
         grid.fill(surface);
         grid.steps = grid.distances();
         grid.tell_sides(surface);
@@ -60,13 +62,14 @@ impl Grid {
             sum += *start;
             *start = sum;
         }
-        let mut triangles = vec![Facet::default(); sum as usize];
+        let mut triangles = vec![0; sum as usize];
         // From the end of each cell's list to its start.
         self.for_each_touched(surface, |cell, triangle| {
             starts[cell] -= 1;
-            triangles[starts[cell] as usize] =
-                Facet::new(surface.corners(triangle).map(|corner| self.place(corner)), triangle);
+            triangles[starts[cell] as usize] = triangle;
         });
+        let facet = |triangle| Facet::new(surface.corners(triangle).map(|corner| self.place(corner)));
+        self.facets = (0..surface.triangles.len() as u32).map(facet).collect();
         (self.starts, self.triangles) = (starts, triangles);
     }
 
@@ -163,8 +166,9 @@ impl Grid {
                 if steps == 0 { self.starts[index] as usize..self.starts[index + 1] as usize } else { 0..0 };
             // Far enough, as the grid is smaller.
             let reach = (limit * self.scale).min(4.0 * CELLS) as f32;
-            for facet in self.triangles[touching].iter().filter(|facet| sight.may_cross(facet, reach)) {
-                let corners @ [a, b, c] = surface.corners(facet.triangle);
+            let may_cross = |triangle: &&u32| sight.may_cross(&self.facets[**triangle as usize], reach);
+            for &triangle in self.triangles[touching].iter().filter(may_cross) {
+                let corners @ [a, b, c] = surface.corners(triangle);
                 // Most rays need none.
                 let ray = ray.get_or_insert_with(|| Ray::new(origin, direction));
                 let Some((t, _)) = ray.meets_triangle(corners).filter(|(t, _)| (0.0..=limit).contains(t))
@@ -310,8 +314,8 @@ mod tests {
         let mut grid = Grid::new(&surface);
         let [differing_rays, count] = differing(&surface, &grid);
         assert!(differing_rays == 0 && count > 1000, "{differing_rays} {count}");
-        // Every hundredth facet somewhere else.
-        grid.triangles.iter_mut().step_by(100).for_each(|facet| facet.triangle = 0);
+        // Every hundredth triangle another.
+        grid.triangles.iter_mut().step_by(100).for_each(|triangle| *triangle = 0);
         assert!(differing(&surface, &grid)[0] > 0, "damage must be noticed");
     }
 }
