@@ -4,6 +4,7 @@ use glam::{DVec3, IVec3};
 
 use super::Crossing;
 use super::facet::{Facet, Sight};
+use super::lists::Lists;
 use crate::Surface;
 use crate::surface::Ray;
 
@@ -20,14 +21,13 @@ pub(super) struct Grid {
     /// Cells per mm.
     scale: f64,
     size: IVec3,
-    /// Cells are kept in blocks of 4³, as who asks for one soon asks for its neighbours: so many to the right and up.
-    blocks: [i32; 2],
+    /// Cells are kept in blocks of 4³, so many along each side, as who asks for one soon asks for its neighbours.
+    blocks: IVec3,
     /// The size as a place.
     end: DVec3,
     steps: Vec<i8>,
-    /// Where each cell's triangles begin.
-    starts: Vec<u32>,
-    triangles: Vec<u32>,
+    /// Which triangles touch each cell.
+    triangles: Lists<u32>,
     /// Of every triangle.
     facets: Vec<Facet>,
 }
@@ -42,39 +42,20 @@ impl Grid {
         // One cell more on each side stays empty, so that the outside is connected.
         let low = low - 1.5 * edge;
         let size = ((high - low) / edge).as_ivec3() + 3;
-        let (steps, triangles, facets) = (Vec::new(), Vec::new(), Vec::new());
-        let blocks = (size + 3) / 4;
-        let starts = vec![0; 64 * blocks.element_product() as usize + 1];
-        let (scale, end) = (1.0 / edge, size.as_dvec3());
-        let blocks = [blocks.x, blocks.y];
-        let mut grid = Self { extent, low, edge, scale, size, blocks, end, steps, starts, triangles, facets };
-        grid.fill(surface);
+        let (steps, triangles, facets) = (Vec::new(), Lists::new(0, |_| {}), Vec::new());
+        let (scale, end, blocks) = (1.0 / edge, size.as_dvec3(), (size + 3) / 4);
+        let count = 64 * blocks.element_product() as usize;
+        let mut grid = Self { extent, low, edge, scale, size, blocks, end, steps, triangles, facets };
+        grid.triangles = Lists::new(count, |each| grid.for_each_touched(surface, each));
+        let facet = |triangle| Facet::new(surface.corners(triangle).map(|corner| grid.place(corner)));
+        grid.facets = (0..surface.triangles.len() as u32).map(facet).collect();
         grid.steps = grid.distances();
         grid.tell_sides(surface);
         grid
     }
 
-    fn fill(&mut self, surface: &Surface) {
-        let mut starts = std::mem::take(&mut self.starts);
-        self.for_each_touched(surface, |cell, _| starts[cell] += 1);
-        let mut sum = 0;
-        for start in &mut starts {
-            sum += *start;
-            *start = sum;
-        }
-        let mut triangles = vec![0; sum as usize];
-        // From the end of each cell's list to its start.
-        self.for_each_touched(surface, |cell, triangle| {
-            starts[cell] -= 1;
-            triangles[starts[cell] as usize] = triangle;
-        });
-        let facet = |triangle| Facet::new(surface.corners(triangle).map(|corner| self.place(corner)));
-        self.facets = (0..surface.triangles.len() as u32).map(facet).collect();
-        (self.starts, self.triangles) = (starts, triangles);
-    }
-
     /// Calls `each` for cells that a triangle's box and its plane pass through.
-    fn for_each_touched(&self, surface: &Surface, mut each: impl FnMut(usize, u32)) {
+    fn for_each_touched(&self, surface: &Surface, each: &mut dyn FnMut(usize, u32)) {
         let hair = HAIR * self.edge;
         for triangle in 0..surface.triangles.len() as u32 {
             let [a, b, c] = surface.corners(triangle);
@@ -101,7 +82,7 @@ impl Grid {
     fn index(&self, cell: IVec3) -> usize {
         let (block, within): (IVec3, IVec3) = (cell >> 2, cell & 3);
         let IVec3 { x, y, z } = within;
-        let block = (block.z * self.blocks[1] + block.y) * self.blocks[0] + block.x;
+        let block = (block.z * self.blocks.y + block.y) * self.blocks.x + block.x;
         (block << 6 | z << 4 | y << 2 | x) as usize
     }
 
@@ -162,12 +143,11 @@ impl Grid {
             };
             let index = self.index(cell);
             let steps = i32::from(self.steps[index]).abs();
-            let touching =
-                if steps == 0 { self.starts[index] as usize..self.starts[index + 1] as usize } else { 0..0 };
+            let touching = if steps == 0 { self.triangles.of(index) } else { &[] };
             // Far enough, as the grid is smaller.
             let reach = (limit * self.scale).min(4.0 * CELLS) as f32;
             let may_cross = |triangle: &&u32| sight.may_cross(&self.facets[**triangle as usize], reach);
-            for &triangle in self.triangles[touching].iter().filter(may_cross) {
+            for &triangle in touching.iter().filter(may_cross) {
                 let corners @ [a, b, c] = surface.corners(triangle);
                 // Most rays need none.
                 let ray = ray.get_or_insert_with(|| Ray::new(origin, direction));
@@ -191,8 +171,8 @@ impl Grid {
     /// Steps from each cell to a touched one: a pass in the order of the cells and one back, each from half of the neighbours
     /// (Rosenfeld and Pfaltz 1966).
     fn distances(&self) -> Vec<i8> {
-        let from = |ends: &[u32]| if ends[0] < ends[1] { 0 } else { i8::MAX };
-        let mut steps: Vec<i8> = self.starts.windows(2).map(from).collect();
+        let from = |cell| if self.triangles.of(cell).is_empty() { i8::MAX } else { 0 };
+        let mut steps: Vec<i8> = self.triangles.cells().map(from).collect();
         let neighbours: Vec<IVec3> =
             (0..13).map(|k| IVec3::new(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1)).collect();
         let cells: Vec<IVec3> = self.cells().collect();
@@ -315,7 +295,7 @@ mod tests {
         let [differing_rays, count] = differing(&surface, &grid);
         assert!(differing_rays == 0 && count > 1000, "{differing_rays} {count}");
         // Every hundredth triangle another.
-        grid.triangles.iter_mut().step_by(100).for_each(|triangle| *triangle = 0);
+        grid.triangles.damage(0);
         assert!(differing(&surface, &grid)[0] > 0, "damage must be noticed");
     }
 }

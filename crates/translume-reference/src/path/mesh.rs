@@ -162,17 +162,7 @@ mod tests {
     use super::super::grid::CELLS;
     use super::*;
     use crate::dice::Dice;
-    use crate::testing::octasphere;
-
-    /// A thick shell: a sphere with a hollow one in its middle.
-    fn shell() -> Surface {
-        let (mut positions, mut triangles) = octasphere(3.0, 4);
-        let (more, others) = octasphere(1.0, 4);
-        let count = positions.len() as u32;
-        positions.extend(more);
-        triangles.extend(others.into_iter().map(|[a, b, c]| [a + count, c + count, b + count]));
-        Surface::flat(positions, triangles)
-    }
+    use crate::testing::{octasphere, shell};
 
     /// The bound is one, is not below a half of the distance by much, and knows the hollow from the body.
     #[test]

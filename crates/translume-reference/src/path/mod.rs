@@ -22,6 +22,7 @@ mod film;
 mod grid;
 mod guide;
 mod lamp;
+mod lists;
 mod mesh;
 mod photons;
 mod shape;
