@@ -272,7 +272,7 @@ impl Pending {
 
 /// A ray prepared for the watertight test: `axes` are permuted so that the last is the dominant one, and `shear` maps
 /// the direction onto it.
-struct Ray {
+pub(crate) struct Ray {
     origin: DVec3,
     inverse: DVec3,
     axes: [usize; 3],
@@ -280,7 +280,7 @@ struct Ray {
 }
 
 impl Ray {
-    fn new(origin: DVec3, direction: DVec3) -> Self {
+    pub fn new(origin: DVec3, direction: DVec3) -> Self {
         let size = direction.abs();
         let z = (0..3).fold(0, |best, k| if size[k] > size[best] { k } else { best });
         let (x, y) = ((z + 1) % 3, (z + 2) % 3);
@@ -306,8 +306,9 @@ impl Ray {
         (enter <= leave * SLACK).then_some(enter)
     }
 
+    /// How far away a triangle is met, also behind the origin, and the weights of its second and third corner there.
     #[inline]
-    fn meets_triangle(&self, corners: [DVec3; 3]) -> Option<(f64, [f64; 2])> {
+    pub fn meets_triangle(&self, corners: [DVec3; 3]) -> Option<(f64, [f64; 2])> {
         let [x, y, z] = self.axes;
         let sheared = |corner: DVec3| {
             let p = (corner - self.origin).to_array();

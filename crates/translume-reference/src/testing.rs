@@ -45,6 +45,16 @@ pub(crate) fn square_atlas(size: u32, half: f64) -> Atlas {
     }
 }
 
+/// A thick shell: a sphere of radius 3 with a hollow one of radius 1 in its middle.
+pub(crate) fn shell() -> Surface {
+    let (mut positions, mut triangles) = octasphere(3.0, 4);
+    let (more, others) = octasphere(1.0, 4);
+    let count = positions.len() as u32;
+    positions.extend(more);
+    triangles.extend(others.into_iter().map(|[a, b, c]| [a + count, c + count, b + count]));
+    Surface::flat(positions, triangles)
+}
+
 /// A sphere of triangles with vertices on the radius: an octahedron split `levels` times.
 pub(crate) fn octasphere(radius: f64, levels: u32) -> (Vec<[f64; 3]>, Vec<[u32; 3]>) {
     let mut positions: Vec<glam::DVec3> =

@@ -358,8 +358,8 @@ fn mesh_is_the_shape_it_stands_for() {
     let half_sky = Light::Ambient { radiance: [1.0; 3], axis: UP, half_angle: 1.2, shadow: true };
     for (ior, lights) in [(1.0, vec![sun([0.6, 0.8, 0.0]), half_sky.clone()]), (1.4, vec![half_sky])] {
         let medium = Volume { ior, ..volume([0.5, 1.5, 3.0], [0.05; 3]) };
-        let at = |shape: &dyn Shape| picture(shape, medium, &lights, camera([0.0, 10.0, 60.0], 0.15, 24), 24);
-        let (facets, exact, larger) = (at(&mesh), at(&ball(5.0)), at(&ball(5.8)));
+        let at = |shape: &dyn Shape| picture(shape, medium, &lights, camera([0.0, 10.0, 60.0], 0.15, 24), 60);
+        let (facets, exact, larger) = (at(&mesh), at(&ball(5.0)), at(&ball(6.3)));
         for k in 0..3 {
             let ([expected, error], [found, own]) = (mean(&exact, k), mean(&facets, k));
             // Inscribed facets are smaller by a few 1e-4.

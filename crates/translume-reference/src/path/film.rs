@@ -2,11 +2,14 @@
 
 use glam::DVec3;
 
+use super::Fan;
 use crate::composite::Camera;
 
 /// A camera made ready.
 pub(super) struct Film {
-    eye: DVec3,
+    pub eye: DVec3,
+    /// Of ways through the eye.
+    pub fan: Option<Fan>,
     /// Unit vectors.
     forward: DVec3,
     right: DVec3,
@@ -30,12 +33,13 @@ pub(super) struct View {
 }
 
 impl Film {
-    pub fn new(camera: &Camera) -> Self {
+    pub fn new(camera: &Camera, fan: Option<Fan>) -> Self {
         let [eye, target, up] = [camera.eye, camera.target, camera.up].map(DVec3::from);
         let forward = (target - eye).normalize_or_zero();
         let right = forward.cross(up).normalize_or_zero();
         let scale = 0.5 * camera.width as f64 / (0.5 * camera.fov).tan();
-        Self { eye, forward, right, up: right.cross(forward), scale, size: [camera.width, camera.height] }
+        let (up, size) = (right.cross(forward), [camera.width, camera.height]);
+        Self { eye, fan, forward, right, up, scale, size }
     }
 
     /// `None` for what is beside the picture or behind the eye.
@@ -76,7 +80,7 @@ mod tests {
     /// A pixel sees what lies on its ways of sight, and no other does.
     #[test]
     fn points_fall_into_the_pixels_that_see_them() {
-        let (camera, film) = (camera(), Film::new(&camera()));
+        let (camera, film) = (camera(), Film::new(&camera(), None));
         for pixel in 0..35 {
             let (column, row) = (pixel % 7, pixel / 7);
             for [x, y] in [[0.01, 0.01], [0.99, 0.5], [0.5, 0.99]] {
@@ -98,7 +102,7 @@ mod tests {
     /// The density is how fast the place in the picture changes with the point, by differences.
     #[test]
     fn density_is_the_magnification() {
-        let (camera, film) = (camera(), Film::new(&camera()));
+        let (camera, film) = (camera(), Film::new(&camera(), None));
         for (x, y) in [(3.5, 2.5), (0.2, 0.3), (6.9, 4.1)] {
             let along = DVec3::from(camera.direction_at(x, y));
             let step = 1e-4;

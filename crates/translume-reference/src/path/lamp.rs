@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
+use super::Vantage;
 use crate::dice::Dice;
 use crate::lights::Region;
 use crate::lights::beam::falloff;
@@ -86,6 +87,15 @@ impl Lamp {
     /// Whether no path can run into it.
     pub fn has_no_extent(&self) -> bool {
         matches!(self, Self::Sun { .. } | Self::Point { .. })
+    }
+
+    /// What all ways to it have in common.
+    pub fn vantage(&self) -> Option<Vantage> {
+        match self {
+            Self::Sun { to_light, .. } => Some(Vantage::Direction(*to_light)),
+            Self::Point { position, .. } => Some(Vantage::Point(*position)),
+            _ => None,
+        }
     }
 
     /// Whether light is looked for, and not only met.

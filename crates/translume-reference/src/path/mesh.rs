@@ -4,9 +4,11 @@ use std::collections::HashMap;
 
 use glam::DVec3;
 
+use super::fan::{Fan, Vantage};
 use super::grid::Grid;
 use super::{Crossing, PathError, Shape};
 use crate::Surface;
+use crate::surface::Ray;
 
 /// A surface whose edges all have a triangle on either side. Light is refracted by the faces, whatever normals the surface is
 /// shaded with. Pieces may run through each other, as the spout of a teapot through its wall: what is inside of any is inside.
@@ -66,6 +68,20 @@ impl Shape for Closed<'_> {
         });
     }
 
+    fn fan(&self, vantage: Vantage) -> Option<Fan> {
+        if self.is_composed { None } else { Fan::new(self.surface, self.grid.extent, vantage) }
+    }
+
+    fn crossings_seen(&self, fan: &Fan, origin: DVec3, direction: DVec3, found: &mut dyn FnMut(Crossing)) {
+        let ray = Ray::new(origin, direction);
+        for triangle in fan.ahead(origin, direction) {
+            let corners @ [a, b, c] = self.surface.corners(triangle);
+            if let Some((t, _)) = ray.meets_triangle(corners).filter(|(t, _)| *t >= 0.0) {
+                found(Crossing { t, normal: (b - a).cross(c - a).normalize_or_zero() });
+            }
+        }
+    }
+
     fn first(&self, origin: DVec3, direction: DVec3, leaving: bool, within: f64) -> Option<Crossing> {
         let mut closest: Option<Crossing> = None;
         if self.is_composed {
@@ -74,6 +90,9 @@ impl Shape for Closed<'_> {
                 closest.is_none()
             });
             return closest.filter(|crossing| crossing.t <= within);
+        }
+        if self.grid.contains(origin) {
+            return self.grid.first(self.surface, (origin, direction), leaving, within);
         }
         self.surface.every_hit(origin.to_array(), direction.to_array(), within, |hit, normal| {
             if (normal.dot(direction) > 0.0) == leaving {
@@ -143,17 +162,7 @@ mod tests {
     use super::super::grid::CELLS;
     use super::*;
     use crate::dice::Dice;
-    use crate::testing::octasphere;
-
-    /// A thick shell: a sphere with a hollow one in its middle.
-    fn shell() -> Surface {
-        let (mut positions, mut triangles) = octasphere(3.0, 4);
-        let (more, others) = octasphere(1.0, 4);
-        let count = positions.len() as u32;
-        positions.extend(more);
-        triangles.extend(others.into_iter().map(|[a, b, c]| [a + count, c + count, b + count]));
-        Surface::flat(positions, triangles)
-    }
+    use crate::testing::{octasphere, shell};
 
     /// The bound is one, is not below a half of the distance by much, and knows the hollow from the body.
     #[test]

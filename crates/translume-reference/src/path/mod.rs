@@ -13,11 +13,16 @@
 //! of the picture: what is left is the subsurface component. Light is shadowed by the body whatever `shadow` says, refracted by faces
 //! whatever normals they are shaded with, and lights stand outside the body.
 
+mod connect;
 mod emit;
+mod estimate;
+mod facet;
+mod fan;
 mod film;
 mod grid;
 mod guide;
 mod lamp;
+mod lists;
 mod mesh;
 mod photons;
 mod shape;
@@ -26,9 +31,11 @@ mod volume;
 mod walk;
 mod way;
 
+pub use estimate::Estimate;
+pub use fan::{Fan, Vantage};
 pub use mesh::Closed;
 pub use shape::{Ball, Block, Crossing, Shape};
-pub use trace::{Estimate, Progress, Source, Trace};
+pub use trace::{Progress, Source, Trace};
 pub use volume::Volume;
 
 use crate::Light;
@@ -78,6 +85,8 @@ pub struct PathTracer<'a> {
     volume: Volume,
     groups: Vec<Group>,
     lamps: Vec<Lamp>,
+    /// Of lights that connections run towards through one point or along one direction.
+    fans: Vec<Option<Fan>>,
     bounds: Bounds,
 }
 
@@ -94,10 +103,12 @@ impl<'a> PathTracer<'a> {
         match lamps.iter().position(is_point) {
             Some(index) if volume.ior != 1.0 => Err(PathError::Refracted { index, ior: volume.ior }),
             _ => {
-                let lamps = lamps.into_iter().flatten().collect();
+                let lamps: Vec<Lamp> = lamps.into_iter().flatten().collect();
+                let fan = |lamp: &Lamp| lamp.vantage().and_then(|vantage| shape.fan(vantage));
+                let fans = lamps.iter().map(fan).collect();
                 let [low, high] = shape.extent();
                 let bounds = Bounds { center: 0.5 * (low + high), radius: 0.5 * low.distance(high) };
-                Ok(Self { shape, volume, groups: volume.groups(), lamps, bounds })
+                Ok(Self { shape, volume, groups: volume.groups(), lamps, fans, bounds })
             }
         }
     }

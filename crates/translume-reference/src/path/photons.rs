@@ -3,17 +3,18 @@
 use rayon::prelude::*;
 
 use super::PathTracer;
+use super::emit::Ray;
 use super::film::Film;
 use super::guide::Guide;
 use super::walk::Splat;
 use crate::dice::Dice;
 
-/// Paths that one thread follows at a time, and how many such parts are kept until their order is settled.
-const PART: u64 = 1024;
-const PARTS: u64 = 32;
+/// Paths that one thread follows at a time.
+const PART: usize = 512;
 
-/// Paths between two looks at the clock.
-pub(super) const BATCH: u64 = PART * PARTS;
+/// Paths between two looks at the clock, which start in the order of their cells: those that run through the same part of the body follow
+/// each other, so that it is at hand.
+pub(super) const BATCH: u64 = 32_768;
 
 /// Tells the dice of light from those of pixels.
 const STREAM: u64 = u64::MAX;
@@ -40,6 +41,13 @@ struct Sums {
     single: [f64; 3],
 }
 
+/// A path about to start, and the cell of the guide it is from.
+struct Start {
+    ray: Ray,
+    cell: usize,
+    dice: Dice,
+}
+
 /// What a path of light brought, pixel by pixel.
 struct Part {
     splats: Vec<Splat>,
@@ -59,19 +67,19 @@ impl Photons {
         Self { group, guide, era: 0, share: 0.0, count: 0, work: 0, pixels: vec![Sums::default(); pixels] }
     }
 
-    /// Follows more light; `found` hears of every path's cell, its steps and what it brought to each pixel.
+    /// Follows more light, no more than a batch; `found` hears of every path's cell, its steps and what it brought to each pixel.
     pub fn add(
         &mut self,
         tracer: &PathTracer<'_>,
         (film, seed, count): (&Film, u64, u64),
         mut found: impl FnMut(usize, u64, &[Splat]),
     ) {
-        let ends = |part: u64| [part * PART, ((part + 1) * PART).min(count)].map(|end| self.count + end);
-        let follow = |part: u64| {
-            let [from, to] = ends(part);
-            self.part(tracer, film, seed, from..to)
-        };
-        let parts: Vec<Part> = (0..count.div_ceil(PART)).into_par_iter().map(follow).collect();
+        let paths = self.count..self.count + count;
+        let mut starts: Vec<Start> =
+            paths.into_par_iter().map(|path| self.start(tracer, seed, path)).collect();
+        starts.par_sort_by_key(|start| start.cell);
+        let follow = |starts: &mut [Start]| self.part(tracer, film, starts);
+        let parts: Vec<Part> = starts.par_chunks_mut(PART).map(follow).collect();
         self.count += count;
         for part in parts {
             part.splats.iter().for_each(|splat| self.pixels[splat.pixel].add(splat));
@@ -84,17 +92,20 @@ impl Photons {
         }
     }
 
-    fn part(&self, tracer: &PathTracer<'_>, film: &Film, seed: u64, paths: std::ops::Range<u64>) -> Part {
+    fn start(&self, tracer: &PathTracer<'_>, seed: u64, path: u64) -> Start {
+        let mut dice = Dice::new([seed, STREAM - self.era, path, self.group as u64]);
+        let (ray, cell) = self.guide.emit(tracer, &mut dice);
+        Start { ray, cell, dice }
+    }
+
+    fn part(&self, tracer: &PathTracer<'_>, film: &Film, starts: &mut [Start]) -> Part {
         let mut part = Part { splats: Vec::new(), paths: Vec::new() };
+        let group = &tracer.groups[self.group];
         let mut found = Vec::new();
-        for path in paths {
-            let mut dice = Dice::new([seed, STREAM - self.era, path, self.group as u64]);
-            let (ray, cell) = self.guide.emit(tracer, &mut dice);
-            let region = tracer.lamps[Guide::lamp(cell)].region();
-            let group = &tracer.groups[self.group];
-            let steps = tracer.shine(group, (&ray, region), &mut dice, (film, &mut found));
+        for Start { ray, cell, dice } in starts {
+            let steps = tracer.shine(group, (ray, Guide::lamp(*cell)), dice, (film, &mut found));
             merge(&mut found, &mut part.splats);
-            part.paths.push(Path { cell, steps, end: part.splats.len() });
+            part.paths.push(Path { cell: *cell, steps, end: part.splats.len() });
         }
         part
     }

@@ -2,6 +2,8 @@
 
 use glam::DVec3;
 
+use super::{Fan, Vantage};
+
 /// Where a line crosses the boundary.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Crossing {
@@ -15,6 +17,16 @@ pub struct Crossing {
 pub trait Shape: Sync {
     /// Calls `found` for every crossing of a ray, in no order.
     fn crossings(&self, origin: DVec3, direction: DVec3, found: &mut dyn FnMut(Crossing));
+
+    /// What makes it quick to find the crossings of rays that have a point or a direction in common; `None` where nothing does.
+    fn fan(&self, _vantage: Vantage) -> Option<Fan> {
+        None
+    }
+
+    /// As [`Shape::crossings`], for a ray of the vantage that this body made the fan for.
+    fn crossings_seen(&self, _fan: &Fan, origin: DVec3, direction: DVec3, found: &mut dyn FnMut(Crossing)) {
+        self.crossings(origin, direction, found);
+    }
 
     /// The first crossing towards the outside (`leaving`) or towards the inside, no further than `within` mm.
     fn first(&self, origin: DVec3, direction: DVec3, leaving: bool, within: f64) -> Option<Crossing>;

@@ -3,11 +3,10 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::PathTracer;
+use super::estimate::{Estimate, Sums};
 use super::film::Film;
 use super::photons::{self, Photons};
-use super::volume::Group;
-use super::walk::Harvest;
+use super::{PathTracer, Vantage};
 use crate::composite::Camera;
 use crate::dice::Dice;
 
@@ -24,46 +23,12 @@ const LEAST: f64 = 0.1;
 pub struct Trace<'a> {
     tracer: &'a PathTracer<'a>,
     camera: Camera,
+    film: Film,
     seed: u64,
     passes: u64,
     pixels: Vec<Sums>,
     /// Of the groups of channels whose light is followed from its sources, and not from the eye.
     photons: Vec<Photons>,
-}
-
-/// What the paths of a pixel brought so far.
-#[derive(Clone, Copy, Debug)]
-struct Sums {
-    /// Paths per path of an average pixel, for each group of channels.
-    share: [f32; 3],
-    count: [u32; 3],
-    /// Steps of each group.
-    work: [u64; 3],
-    /// Of all channels, and how many of them met the body.
-    paths: u32,
-    met: u32,
-    radiance: [f64; 3],
-    squares: [f64; 3],
-    single: [f64; 3],
-}
-
-/// Pixels row by row from the top, averaged over their squares.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Estimate {
-    /// Width in pixels.
-    pub width: usize,
-    /// Height in pixels.
-    pub height: usize,
-    /// Radiance, W/(m² sr).
-    pub radiance: Vec<[f64; 3]>,
-    /// One standard error of it; not known, and 0, where fewer than two paths were followed.
-    pub error: Vec<[f64; 3]>,
-    /// The part that was scattered once.
-    pub single: Vec<[f64; 3]>,
-    /// Share of each pixel that the body fills, 0..=1.
-    pub coverage: Vec<f64>,
-    /// Paths of each pixel and channel, which may begin at the eye or be its share of all that begin at a light.
-    pub samples: Vec<[u32; 3]>,
 }
 
 /// Where paths begin. At a refracting boundary they can only begin at the eye.
@@ -90,7 +55,10 @@ pub struct Progress {
 impl<'a> Trace<'a> {
     pub(super) fn new(tracer: &'a PathTracer<'a>, camera: Camera, seed: u64) -> Self {
         let pixels = vec![Sums::new([1.0; 3]); camera.width * camera.height];
-        Self { tracer, camera, seed, passes: 0, pixels, photons: Vec::new() }
+        let fan =
+            if tracer.is_matched() { tracer.shape.fan(Vantage::Point(camera.eye.into())) } else { None };
+        let film = Film::new(&camera, fan);
+        Self { tracer, camera, film, seed, passes: 0, pixels, photons: Vec::new() }
     }
 
     /// Adds `samples` paths to every pixel, or as many as [`Trace::focus`] found better. `progress` hears of every few thousand; when it returns `false` the pass ends early and
@@ -120,12 +88,11 @@ impl<'a> Trace<'a> {
     }
 
     fn shine(&mut self, counts: &[u64], go_on: &mut impl FnMut(usize) -> bool) -> bool {
-        let film = Film::new(&self.camera);
         for (light, &count) in self.photons.iter_mut().zip(counts) {
             let mut left = count;
             while left > 0 {
                 let some = left.min(photons::BATCH);
-                light.add(self.tracer, (&film, self.seed, some), |_, _, _| {});
+                light.add(self.tracer, (&self.film, self.seed, some), |_, _, _| {});
                 left -= some;
                 if !go_on(some as usize) {
                     return false;
@@ -150,7 +117,7 @@ impl<'a> Trace<'a> {
                 let [x, y] = dice.pair();
                 let direction = self.camera.direction_at(column as f64 + x, row as f64 + y);
                 let direction = DVec3::from(direction).normalize_or_zero();
-                let harvest = self.tracer.follow(group, self.camera.eye.into(), direction, &mut dice);
+                let harvest = self.tracer.follow(group, &self.film, direction, &mut dice);
                 sums.work[index] += harvest.work;
                 sums.add(&harvest, group);
             }
@@ -218,7 +185,7 @@ impl<'a> Trace<'a> {
         }
         let work = self.pixels.iter().map(|sums| sums.work[index]).sum();
         let mut light = Photons::new(self.tracer, index, self.pixels.len());
-        let learned = light.learn(self.tracer, (&Film::new(&self.camera), self.seed), work, means);
+        let learned = light.learn(self.tracer, (&self.film, self.seed), work, means);
         Some((light, learned))
     }
 
@@ -290,54 +257,5 @@ impl<'a> Trace<'a> {
                 estimate.samples[pixel][k] = samples;
             }
         }
-    }
-}
-
-impl Sums {
-    fn new(share: [f32; 3]) -> Self {
-        let (count, none) = ([0; 3], [0.0; 3]);
-        Self { share, count, work: [0; 3], paths: 0, met: 0, radiance: none, squares: none, single: none }
-    }
-
-    fn add(&mut self, harvest: &Harvest, group: &Group) {
-        self.paths += 1;
-        self.met += u32::from(harvest.met);
-        for k in (0..3).filter(|&k| group.albedo[k] > 0.0) {
-            self.count[k] += 1;
-            self.radiance[k] += harvest.radiance[k];
-            self.squares[k] += harvest.radiance[k] * harvest.radiance[k];
-            self.single[k] += harvest.single[k];
-        }
-    }
-
-    fn mean(&self, sum: [f64; 3]) -> [f64; 3] {
-        std::array::from_fn(|k| sum[k] / f64::from(self.count[k].max(1)))
-    }
-
-    /// Of one path's light, without bias; 0 of fewer than two paths.
-    fn variance(&self, channel: usize) -> f64 {
-        let count = f64::from(self.count[channel].max(2));
-        let mean = self.radiance[channel] / count;
-        ((self.squares[channel] / count - mean * mean) * count / (count - 1.0)).max(0.0)
-    }
-
-    fn error(&self) -> [f64; 3] {
-        std::array::from_fn(|k| (self.variance(k) / f64::from(self.count[k].max(1))).sqrt())
-    }
-}
-
-impl Estimate {
-    /// Root mean square of the standard error over the mean radiance, both over the pixels that the body touches, of the noisiest channel.
-    /// 0 where nothing shines.
-    #[must_use]
-    pub fn noise(&self) -> f64 {
-        let touched: Vec<usize> = (0..self.coverage.len()).filter(|&k| self.coverage[k] > 0.0).collect();
-        let count = touched.len() as f64;
-        let noise = |channel: usize| {
-            let mean = touched.iter().map(|&k| self.radiance[k][channel]).sum::<f64>() / count;
-            let square = touched.iter().map(|&k| self.error[k][channel].powi(2)).sum::<f64>() / count;
-            if mean > 0.0 { square.sqrt() / mean } else { 0.0 }
-        };
-        (0..3).map(noise).fold(0.0, f64::max)
     }
 }

@@ -1,8 +1,8 @@
 //! What fills the body.
 
-use std::f64::consts::{FRAC_1_PI, TAU};
+use std::f64::consts::FRAC_1_PI;
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 use crate::Medium;
 use crate::dice::Dice;
@@ -59,7 +59,15 @@ impl Volume {
 
     /// A direction with that density around the last one.
     pub(super) fn scatter(&self, direction: DVec3, dice: &mut Dice) -> DVec3 {
-        let (g, [u, v]) = (self.g, dice.pair());
+        // A point of the unit disc has a direction and, apart from it, an even square of its radius (Marsaglia 1972).
+        let (side, u) = loop {
+            let [x, y] = dice.pair().map(|x| 2.0 * x - 1.0);
+            let square = x * x + y * y;
+            if 0.0 < square && square <= 1.0 {
+                break (DVec2::new(x, y) / square.sqrt(), square);
+            }
+        };
+        let g = self.g;
         let cos = if g.abs() < 1e-4 {
             // To first order in g; the closed form cancels here.
             let even = 2.0 * u - 1.0;
@@ -69,8 +77,7 @@ impl Volume {
             (1.0 + g * g - share * share) / (2.0 * g)
         };
         let across = (1.0 - cos * cos).max(0.0).sqrt();
-        let (sin, cosine) = (TAU * v).sin_cos();
-        let local = DVec3::new(across * cosine, across * sin, cos);
+        let local = (side * across).extend(cos);
         if g == 0.0 { local } else { (frame(direction) * local).normalize() }
     }
 }
@@ -86,6 +93,8 @@ pub(super) struct Group {
 
 #[cfg(test)]
 mod tests {
+    use std::f64::consts::TAU;
+
     use super::*;
 
     fn volume(g: f64) -> Volume {

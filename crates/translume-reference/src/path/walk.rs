@@ -4,14 +4,12 @@ use glam::DVec3;
 
 use super::emit::Ray;
 use super::film::Film;
-use super::lamp::Lamp;
 use super::volume::Group;
-use super::way::{Way, inside, is_lit, segments, surely_inside};
-use super::{Crossing, PathTracer};
+use super::way::{Way, crossings, is_lit, segments};
+use super::{Crossing, Fan, PathTracer};
 use crate::dice::Dice;
 use crate::fresnel::{refracted_cos, transmittance};
 use crate::lights::Region;
-use crate::rgb::accumulate;
 
 /// Roulette sets in where a path's weight falls below this.
 const LIGHT: f64 = 0.3;
@@ -20,7 +18,7 @@ const LIGHT: f64 = 0.3;
 const MOST_CROSSINGS: u32 = 10_000;
 
 /// Steps that take as long as a ray, roughly.
-const RAY: u64 = 8;
+pub(super) const RAY: u64 = 8;
 
 /// What one path brings.
 #[derive(Clone, Copy, Debug, Default)]
@@ -44,37 +42,39 @@ pub(super) struct Splat {
 }
 
 /// What a path is connected to.
-enum Goal<'a> {
+pub(super) enum Goal<'a> {
     Lights,
     Eye { film: &'a Film, region: Option<Region>, found: &'a mut Vec<Splat> },
 }
 
 /// A path under way.
-struct Walk<'a> {
-    tracer: &'a PathTracer<'a>,
-    group: &'a Group,
-    dice: &'a mut Dice,
-    goal: Goal<'a>,
-    harvest: Harvest,
+pub(super) struct Walk<'a> {
+    pub tracer: &'a PathTracer<'a>,
+    pub group: &'a Group,
+    pub dice: &'a mut Dice,
+    pub goal: Goal<'a>,
+    pub harvest: Harvest,
     /// In each channel; the light that the path will find counts by it.
-    weight: [f64; 3],
+    pub weight: [f64; 3],
     /// What the path set out with.
-    start: [f64; 3],
-    scatterings: u32,
+    pub start: [f64; 3],
+    pub scatterings: u32,
     /// Where the last straight line began, and how far along it the path is, with how much of that inside.
-    origin: DVec3,
-    direction: DVec3,
-    travelled: f64,
-    inside: f64,
+    pub origin: DVec3,
+    pub direction: DVec3,
+    pub travelled: f64,
+    pub inside: f64,
+    /// A lower bound of the distance from there to the boundary, mm.
+    pub clearance: f64,
     /// Density with which the last collision chose the direction, 1/sr.
-    density: f64,
+    pub density: f64,
 }
 
 impl PathTracer<'_> {
     /// Follows a path from the eye along a unit direction.
-    pub(super) fn follow(&self, group: &Group, eye: DVec3, direction: DVec3, dice: &mut Dice) -> Harvest {
-        let ray = Ray { origin: eye, direction, power: [1.0; 3] };
-        self.walk(group, &ray, dice, Goal::Lights)
+    pub(super) fn follow(&self, group: &Group, film: &Film, direction: DVec3, dice: &mut Dice) -> Harvest {
+        let ray = Ray { origin: film.eye, direction, power: [1.0; 3] };
+        self.walk(group, (&ray, film.fan.as_ref()), dice, Goal::Lights)
     }
 
     /// Follows light from its source through an index-matched boundary. It is `found` at every collision, in one pixel more than once;
@@ -82,14 +82,21 @@ impl PathTracer<'_> {
     pub(super) fn shine(
         &self,
         group: &Group,
-        (ray, region): (&Ray, Option<Region>),
+        (ray, lamp): (&Ray, usize),
         dice: &mut Dice,
         (film, found): (&Film, &mut Vec<Splat>),
     ) -> u64 {
-        self.walk(group, ray, dice, Goal::Eye { film, region, found }).work
+        let region = self.lamps[lamp].region();
+        self.walk(group, (ray, self.fans[lamp].as_ref()), dice, Goal::Eye { film, region, found }).work
     }
 
-    fn walk(&self, group: &Group, ray: &Ray, dice: &mut Dice, goal: Goal<'_>) -> Harvest {
+    fn walk(
+        &self,
+        group: &Group,
+        (ray, fan): (&Ray, Option<&Fan>),
+        dice: &mut Dice,
+        goal: Goal<'_>,
+    ) -> Harvest {
         let mut walk = Walk {
             tracer: self,
             group,
@@ -103,10 +110,11 @@ impl PathTracer<'_> {
             direction: ray.direction,
             travelled: 0.0,
             inside: 0.0,
+            clearance: 0.0,
             density: 0.0,
         };
         if self.is_matched() {
-            walk.collide_ahead();
+            walk.collide_ahead(fan);
         } else {
             walk.refract_in();
         }
@@ -117,13 +125,20 @@ impl PathTracer<'_> {
 impl Walk<'_> {
     /// The first collision on the straight way through an index-matched body. Light that does not collide is not part of the picture,
     /// so the collision is certain and weighs as much as it is probable.
-    fn collide_ahead(&mut self) {
-        let mut crossings = Vec::new();
-        self.tracer.shape.crossings(self.origin, self.direction, &mut |crossing| crossings.push(crossing));
-        self.harvest.met = !crossings.is_empty();
+    fn collide_ahead(&mut self, fan: Option<&Fan>) {
+        let way = Way {
+            origin: self.origin,
+            direction: self.direction,
+            distance: f64::INFINITY,
+            clearance: 0.0,
+            fan,
+        };
+        let mut met = Vec::new();
+        crossings(self.tracer.shape, &way, &mut |crossing| met.push(crossing));
+        self.harvest.met = !met.is_empty();
         self.harvest.work += RAY;
-        crossings.sort_by(|a, b| a.t.total_cmp(&b.t));
-        let segments = segments(&crossings, self.direction);
+        met.sort_by(|a, b| a.t.total_cmp(&b.t));
+        let segments = segments(&met, self.direction);
         if let (Goal::Eye { region, .. }, Some([enter, _])) = (&self.goal, segments.first())
             && !is_lit(*region, self.origin + self.direction * *enter)
         {
@@ -177,6 +192,7 @@ impl Walk<'_> {
                 }
                 self.weight = self.weight.map(|weight| weight * LIGHT / heaviest);
             }
+            self.clearance = self.tracer.shape.clearance(self.origin);
             if self.tracer.is_matched() {
                 self.connect();
             }
@@ -196,13 +212,12 @@ impl Walk<'_> {
         let shape = self.tracer.shape;
         for _ in 0..MOST_CROSSINGS {
             if is_inside {
-                let at = self.at();
-                if left < shape.clearance(at) {
+                if self.travelled == 0.0 && left < self.clearance {
                     self.place(self.travelled + left);
                     return true;
                 }
                 self.harvest.work += RAY;
-                let Some(crossing) = shape.first(at, self.direction, true, left) else {
+                let Some(crossing) = shape.first(self.at(), self.direction, true, left) else {
                     self.place(self.travelled + left);
                     // Rounding can leave a path outside of a sharp edge, one in billions.
                     return shape.clearance(self.origin) >= 0.0;
@@ -268,109 +283,6 @@ impl Walk<'_> {
     }
 
     fn place_at(&mut self, to: DVec3) {
-        (self.origin, self.travelled, self.inside) = (to, 0.0, 0.0);
+        (self.origin, self.travelled, self.inside, self.clearance) = (to, 0.0, 0.0, 0.0);
     }
-
-    /// Light of some extent on the way ahead outside. Where it was also aimed at, both count by the balance heuristic (Veach and Guibas
-    /// 1995), in whose terms a path got here with the density of its direction times the probability not to have collided.
-    fn meet_lights(&mut self, free: f64) {
-        if self.scatterings == 0 || matches!(self.goal, Goal::Eye { .. }) {
-            return;
-        }
-        for lamp in &self.tracer.lamps {
-            let ahead = |distance: f64| (self.travelled..=self.travelled + free).contains(&distance);
-            let Some(sight) = lamp.sight(self.origin, self.direction).filter(|sight| ahead(sight.distance))
-            else {
-                continue;
-            };
-            let own = self.density * (-self.group.sigma_t * self.inside).exp();
-            let is_aimed_at = self.tracer.is_matched() && lamp.is_aimed_at();
-            self.reap(sight.radiance, if is_aimed_at { own / (own + sight.density) } else { 1.0 });
-        }
-    }
-
-    /// Straight connections, as an index-matched boundary bends none.
-    fn connect(&mut self) {
-        if matches!(self.goal, Goal::Eye { .. }) {
-            return self.connect_to_eye();
-        }
-        for lamp in self.tracer.lamps.iter().filter(|lamp| lamp.is_aimed_at()) {
-            self.connect_to(lamp);
-        }
-    }
-
-    fn connect_to(&mut self, lamp: &Lamp) {
-        let Some(aim) = lamp.aim(self.origin, self.dice) else {
-            return;
-        };
-        let way = Way { origin: self.origin, direction: aim.direction, distance: aim.distance };
-        let Some(Passage { inside, last, share }) = self.pass(&way) else {
-            return;
-        };
-        if !is_lit(lamp.region(), way.at(last)) {
-            return;
-        }
-        let phase = self.tracer.volume.phase(self.direction.dot(aim.direction));
-        let weight = if aim.density.is_finite() {
-            let met = phase * (-self.group.sigma_t * inside).exp();
-            aim.density / (aim.density + met)
-        } else {
-            1.0
-        };
-        self.reap(aim.light, weight * phase * share);
-    }
-
-    fn connect_to_eye(&mut self) {
-        let Goal::Eye { film, .. } = &self.goal else {
-            return;
-        };
-        let Some(view) = film.view(self.origin) else {
-            return;
-        };
-        let way = Way { origin: self.origin, direction: view.direction, distance: view.distance };
-        let Some(Passage { share, .. }) = self.pass(&way) else {
-            return;
-        };
-        let phase = self.tracer.volume.phase(self.direction.dot(view.direction));
-        let radiance = self.found([view.density; 3], phase * share);
-        let single = if self.scatterings == 1 { radiance } else { [0.0; 3] };
-        if let Goal::Eye { found, .. } = &mut self.goal {
-            found.push(Splat { pixel: view.pixel, radiance, single });
-        }
-    }
-
-    /// What light gets through. Most ways cross too much of the body to matter. One is followed with the probability that light gets through
-    /// what is surely inside, and not weakened by that again.
-    fn pass(&mut self, way: &Way) -> Option<Passage> {
-        let (shape, sigma_t) = (self.tracer.shape, self.group.sigma_t);
-        let patience = self.dice.exponential();
-        let surely = sigma_t * surely_inside(shape, way, [1.0, patience].map(|x| x / sigma_t));
-        if surely > patience {
-            return None;
-        }
-        self.harvest.work += RAY;
-        let [inside, last] = inside(shape, way);
-        Some(Passage { inside, last, share: (surely - sigma_t * inside).exp() })
-    }
-
-    fn reap(&mut self, light: [f64; 3], factor: f64) {
-        let found = self.found(light, factor);
-        accumulate(&mut self.harvest.radiance, found, 1.0);
-        if self.scatterings == 1 {
-            accumulate(&mut self.harvest.single, found, 1.0);
-        }
-    }
-
-    fn found(&self, light: [f64; 3], factor: f64) -> [f64; 3] {
-        std::array::from_fn(|k| self.start[k] * self.weight[k] * light[k] * factor)
-    }
-}
-
-/// A way that was followed.
-struct Passage {
-    /// How much of it is inside, and how far away the last of it is, mm.
-    inside: f64,
-    last: f64,
-    /// What gets through, over the probability to be followed.
-    share: f64,
 }

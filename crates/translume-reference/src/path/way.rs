@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::{Crossing, Shape};
+use super::{Crossing, Fan, Shape};
 use crate::lights::Region;
 
 /// How many points of a way are asked for their distance to the boundary.
@@ -26,20 +26,32 @@ pub(super) fn segments(crossings: &[Crossing], direction: DVec3) -> Vec<[f64; 2]
 }
 
 /// A straight way from a point of the body to one outside.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Way {
+#[derive(Clone, Copy)]
+pub(super) struct Way<'a> {
     pub origin: DVec3,
     /// Unit vector.
     pub direction: DVec3,
     /// mm; infinite for a light that is a direction.
     pub distance: f64,
+    /// A lower bound of the distance from its origin to the boundary, mm.
+    pub clearance: f64,
+    /// Of the ways to the same point or along the same direction.
+    pub fan: Option<&'a Fan>,
+}
+
+/// Calls `found` for every crossing of a way and beyond its end, in no order.
+pub(super) fn crossings(shape: &dyn Shape, way: &Way<'_>, found: &mut dyn FnMut(Crossing)) {
+    match way.fan {
+        Some(fan) => shape.crossings_seen(fan, way.origin, way.direction, found),
+        None => shape.crossings(way.origin, way.direction, found),
+    }
 }
 
 /// How much of a way is inside, mm, and how far away the last of it is. Every way out counts by its distance, every way in against it, so
 /// that the order does not matter.
-pub(super) fn inside(shape: &dyn Shape, way: &Way) -> [f64; 2] {
+pub(super) fn inside(shape: &dyn Shape, way: &Way<'_>) -> [f64; 2] {
     let (mut length, mut balance, mut last) = (0.0, 1, 0.0f64);
-    shape.crossings(way.origin, way.direction, &mut |crossing| {
+    crossings(shape, way, &mut |crossing| {
         if crossing.t > way.distance {
             return;
         }
@@ -60,10 +72,10 @@ pub(super) fn inside(shape: &dyn Shape, way: &Way) -> [f64; 2] {
 
 /// A lower bound of the same, from spheres around points of the way, a `step` apart or more, that the boundary does not reach into; it
 /// need not go on beyond `enough`.
-pub(super) fn surely_inside(shape: &dyn Shape, way: &Way, [step, enough]: [f64; 2]) -> f64 {
+pub(super) fn surely_inside(shape: &dyn Shape, way: &Way<'_>, [step, enough]: [f64; 2]) -> f64 {
     let (mut length, mut end, mut t) = (0.0, 0.0, 0.0);
     for _ in 0..PROBES {
-        let radius = shape.clearance(way.at(t)).max(0.0);
+        let radius = if t > 0.0 { shape.clearance(way.at(t)) } else { way.clearance }.max(0.0);
         let (from, to) = ((t - radius).max(end), (t + radius).min(way.distance));
         if to > from {
             length += to - from;
@@ -82,7 +94,7 @@ pub(super) fn is_lit(region: Option<Region>, at: DVec3) -> bool {
     region.is_none_or(|(low, high)| at.cmpge(low.into()).all() && at.cmple(high.into()).all())
 }
 
-impl Way {
+impl Way<'_> {
     pub fn at(&self, t: f64) -> DVec3 {
         self.origin + self.direction * t
     }
@@ -96,8 +108,8 @@ mod tests {
     use crate::dice::Dice;
     use crate::testing::octasphere;
 
-    fn up(origin: DVec3) -> Way {
-        Way { origin, direction: DVec3::Y, distance: f64::INFINITY }
+    fn up(origin: DVec3) -> Way<'static> {
+        Way { origin, direction: DVec3::Y, distance: f64::INFINITY, clearance: 0.0, fan: None }
     }
 
     /// The bound stays below the way inside, and is a good part of it where that is long.
@@ -117,7 +129,11 @@ mod tests {
             let [length, _] = inside(&mesh, &up(point));
             // Facets of level 5 lie within 0.06 % of the radius; along the surface that is more.
             assert!((length - exact).abs() < 0.05, "{length} {exact}");
-            let bound = surely_inside(&mesh, &up(point), [0.5, f64::INFINITY]);
+            let bound = surely_inside(
+                &mesh,
+                &Way { clearance: mesh.clearance(point), ..up(point) },
+                [0.5, f64::INFINITY],
+            );
             assert!(bound <= length, "{bound} {length}");
             (bounds, lengths) = (bounds + bound, lengths + length);
         }
