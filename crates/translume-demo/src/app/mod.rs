@@ -8,6 +8,8 @@ mod loaded;
 mod orbit;
 mod panels;
 mod playback;
+#[cfg(test)]
+mod tests;
 mod truth;
 mod viewport;
 mod worker;
@@ -102,8 +104,8 @@ pub struct App {
     view: viewport::Viewport,
 }
 
-/// Opens the window and stays until it is closed.
-pub fn run() -> Result<(), Error> {
+/// Opens the window, on a model or a scene if one is named, and stays until it is closed.
+pub fn run(name: Option<&str>) -> Result<(), Error> {
     let options = eframe::NativeOptions {
         viewport: egui::ViewportBuilder::default()
             .with_title("Translume")
@@ -113,7 +115,7 @@ pub fn run() -> Result<(), Error> {
             .with_drag_and_drop(true),
         ..Default::default()
     };
-    let start: eframe::AppCreator<'_> = Box::new(|context| Ok(Box::new(App::new(context, None))));
+    let start: eframe::AppCreator<'_> = Box::new(|context| Ok(Box::new(App::new(context, name))));
     eframe::run_native("translume", options, start).map_err(|error| Error::Window(error.to_string()))
 }
 
@@ -409,6 +411,10 @@ impl App {
 
     /// Asks for a file without keeping the window waiting.
     fn ask(&self, choice: Choice) {
+        // Nobody would answer.
+        if cfg!(test) {
+            return;
+        }
         let events = self.events.clone();
         std::thread::spawn(move || {
             if let Some(path) = panels::dialogue(choice) {
@@ -452,5 +458,9 @@ impl eframe::App for App {
         let scene = self.loaded.as_ref().map(|_| self.scene.clone());
         let memory = Memory { scene, recent: self.recent.clone(), playback: self.playback };
         eframe::set_value(storage, eframe::APP_KEY, &memory);
+    }
+
+    fn on_exit(&mut self) {
+        self.frames.tell();
     }
 }

@@ -93,8 +93,9 @@ fn act(app: &mut App, ui: &egui::Ui, rect: Rect, response: &egui::Response) {
     let frame = orbit::Frame::of(&orbit::shaped(camera, pixels));
     let pointer = response.interact_pointer_pos().or(response.hover_pos());
     let handles = handles(app, &frame, rect);
+    // A drag is known for one after some points of way.
     if response.drag_started_by(egui::PointerButton::Primary)
-        && let Some(pointer) = pointer
+        && let Some(pointer) = ui.input(|input| input.pointer.press_origin())
     {
         let near = handles.iter().filter(|handle| handle.place.distance(pointer) < HANDLE);
         let nearest = near.min_by(|a, b| a.place.distance(pointer).total_cmp(&b.place.distance(pointer)));

@@ -8,14 +8,15 @@ use egui::{Key, KeyboardShortcut, Modifiers};
 
 type Action = fn(&mut App, &egui::Context);
 
+/// A shortcut is also pressed when Shift is held with it: those with Shift come first.
 const SHORTCUTS: &[(Modifiers, Key, &str, Action)] = &[
     (Modifiers::NONE, Key::Space, "play or pause", |app, _| app.playback.playing = !app.playback.playing),
     (Modifiers::NONE, Key::F, "see all of the model", |app, _| app.frame_all()),
     (Modifiers::COMMAND, Key::O, "open a model, a scene or a sky", |app, _| app.ask(Choice::Open)),
-    (Modifiers::COMMAND, Key::S, "save the picture", |app, _| app.ask(Choice::SavePicture)),
     (Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::S, "save the scene", |app, _| {
         app.ask(Choice::SaveScene)
     }),
+    (Modifiers::COMMAND, Key::S, "save the picture", |app, _| app.ask(Choice::SavePicture)),
     (Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::C, "copy the scene as JSON", file::copy),
     (Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::Z, "redo", |app, _| app.undo(true)),
     (Modifiers::COMMAND, Key::Z, "undo", |app, _| app.undo(false)),
@@ -62,4 +63,20 @@ pub fn sheet(app: &mut App, context: &egui::Context) {
             });
         },
     );
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_shortcut_takes_what_is_meant_for_a_later_one() {
+        for (k, (pressed, key, name, _)) in SHORTCUTS.iter().enumerate() {
+            let takes = |other: &&(Modifiers, Key, &str, Action)| {
+                other.1 == *key && pressed.matches_logically(other.0)
+            };
+            let first = SHORTCUTS.iter().position(|other| takes(&other));
+            assert_eq!(first, Some(k), "{name}");
+        }
+    }
 }
