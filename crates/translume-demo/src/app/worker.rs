@@ -88,6 +88,7 @@ impl Worker {
         let (orders, inbox) = channel();
         let events = events.clone();
         std::thread::spawn(move || {
+            let _last_words = LastWords(events.clone());
             let easel = Gpu::new().and_then(|gpu| {
                 let Gpu { adapter, is_software, .. } = &gpu;
                 let adapter = Adapter { name: adapter.clone(), is_software: *is_software };
@@ -105,6 +106,17 @@ impl Worker {
     pub fn order(&self, order: Order) {
         // A worker that has ended has told why.
         let _ = self.orders.send(order);
+    }
+}
+
+/// Tells of a thread that ends before its time: wgpu panics where a driver is reset, say.
+struct LastWords(Events);
+
+impl Drop for LastWords {
+    fn drop(&mut self) {
+        if std::thread::panicking() {
+            self.0.send(Event::Ready(Err(Error::Worker)));
+        }
     }
 }
 

@@ -21,6 +21,9 @@ const SHORTCUTS: &[(Modifiers, Key, &str, Action)] = &[
     (Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::Z, "redo", |app, _| app.undo(true)),
     (Modifiers::COMMAND, Key::Z, "undo", |app, _| app.undo(false)),
     (Modifiers::NONE, Key::Escape, "stop what is being opened", |app, _| app.job = None),
+    (Modifiers::COMMAND, Key::Q, "quit", |_, context| {
+        context.send_viewport_cmd(egui::ViewportCommand::Close);
+    }),
     (Modifiers::NONE, Key::F1, "show or hide this sheet", |app, _| app.shows_keys = !app.shows_keys),
 ];
 
@@ -46,23 +49,22 @@ pub fn keys(app: &mut App, context: &egui::Context) {
 
 /// What keys and the mouse do.
 pub fn sheet(app: &mut App, context: &egui::Context) {
-    egui::Window::new("Keys and mouse").open(&mut app.shows_keys).resizable(false).collapsible(false).show(
-        context,
-        |ui| {
-            egui::Grid::new("keys").num_columns(2).striped(true).show(ui, |ui| {
-                for &(modifiers, key, meaning, _) in SHORTCUTS {
-                    ui.monospace(context.format_shortcut(&KeyboardShortcut::new(modifiers, key)));
-                    ui.label(meaning);
-                    ui.end_row();
-                }
-                for (act, meaning) in MOUSE {
-                    ui.monospace(*act);
-                    ui.label(*meaning);
-                    ui.end_row();
-                }
-            });
-        },
-    );
+    let middle = context.content_rect().center();
+    let window = egui::Window::new("Keys and mouse").pivot(egui::Align2::CENTER_CENTER).default_pos(middle);
+    window.open(&mut app.shows_keys).resizable(false).collapsible(false).show(context, |ui| {
+        egui::Grid::new("keys").num_columns(2).striped(true).show(ui, |ui| {
+            for &(modifiers, key, meaning, _) in SHORTCUTS {
+                ui.monospace(context.format_shortcut(&KeyboardShortcut::new(modifiers, key)));
+                ui.label(meaning);
+                ui.end_row();
+            }
+            for (act, meaning) in MOUSE {
+                ui.monospace(*act);
+                ui.label(*meaning);
+                ui.end_row();
+            }
+        });
+    });
 }
 
 #[cfg(test)]

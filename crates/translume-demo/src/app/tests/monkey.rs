@@ -69,7 +69,10 @@ struct Monkey {
 
 impl Monkey {
     fn new(seed: u64) -> Self {
-        let window = Window::with(&Setup { size: [720.0, 480.0], step: 0.5, ..Setup::default() }, SPHERE);
+        let window = Window::with(
+            &Setup { size: [720.0, 480.0], step: 0.5, allows_tofu: true, ..Setup::default() },
+            SPHERE,
+        );
         let files = vec![
             window.file("round.obj", &obj(&builtin::sphere([0.0; 3], 20.0, 2))),
             window.file("coarse.obj", &obj(&builtin::sphere([0.0; 3], 1.0, 1))),

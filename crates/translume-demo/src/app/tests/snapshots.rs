@@ -34,7 +34,9 @@ fn a_sphere_of_wax() {
 
 #[test]
 fn in_a_light_window() {
-    check(&mut window(Theme::Light), "light");
+    let mut window = window(Theme::Light);
+    window.harness.mask(window.view());
+    check(&mut window, "light");
 }
 
 #[test]
@@ -52,6 +54,7 @@ fn an_error() {
     window.settle();
     window.app_mut().frames = Frames::default();
     window.harness.run_steps(4);
+    window.harness.mask(window.view());
     check(&mut window, "error");
 }
 

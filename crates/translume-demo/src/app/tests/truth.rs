@@ -1,5 +1,6 @@
 //! What lies behind the picture, and what lies beside it.
 
+use super::super::App;
 use super::window::{SPHERE, Setup, Window, difference};
 use crate::overlay::Overlay;
 use eframe::egui::Vec2;
@@ -93,14 +94,17 @@ fn paths_are_followed_and_stopped() {
     window.harness.step();
     let first = window.paths().expect("a picture by paths");
     assert!(first.pixels.iter().any(|pixel| pixel.r() > 60), "something is lit");
-    window.until("less noise", |app| app.traced.as_ref().is_some_and(|traced| traced.noise < 0.5));
+    let noise = |app: &App| app.traced.as_ref().map_or(f64::INFINITY, |traced| traced.noise);
+    let begun = noise(window.app());
+    window.until("less noise", |app| noise(app) < begun);
+    window.harness.step();
     assert!(window.says("so far in"));
     window.click("Stop");
     assert!(window.app().tracing.is_none());
-    let noise = window.app().traced.as_ref().map(|traced| traced.noise);
+    let ended = noise(window.app());
     std::thread::sleep(std::time::Duration::from_millis(500));
     window.harness.run_steps(3);
-    assert_eq!(window.app().traced.as_ref().map(|traced| traced.noise), noise, "nothing comes after the end");
+    assert_eq!(noise(window.app()), ended, "nothing comes after the end");
     assert!(!window.says("has changed since"));
     window.slide("exposure, stops", 1.0);
     window.settle();

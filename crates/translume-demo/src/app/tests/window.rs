@@ -71,12 +71,14 @@ pub struct Setup {
     pub paints: bool,
     /// Seconds from step to step.
     pub step: f32,
+    /// Whether letters may be shown that no font has.
+    pub allows_tofu: bool,
 }
 
 impl Default for Setup {
     fn default() -> Self {
         let (size, theme) = ([900.0, 600.0], egui::Theme::Dark);
-        Self { size, pixels_per_point: 1.0, theme, paints: false, step: 1.0 / 30.0 }
+        Self { size, pixels_per_point: 1.0, theme, paints: false, step: 1.0 / 30.0, allows_tofu: false }
     }
 }
 
@@ -116,7 +118,9 @@ impl Window {
         let name = if scene.contains('{') { path.to_str().unwrap() } else { scene };
         let textures = Textures::default();
         let painter = setup.paints.then(WgpuTestRenderer::new);
-        let harness = Harness::builder()
+        let builder = Harness::builder();
+        let builder = if setup.allows_tofu { builder.allow_missing_glyphs() } else { builder };
+        let harness = builder
             .with_size(setup.size)
             .with_pixels_per_point(setup.pixels_per_point)
             .with_theme(setup.theme)
