@@ -7,6 +7,7 @@ use std::path::PathBuf;
 const EXAMPLES: &str = "\
 Examples:
   translume                                                            a window
+  translume view bunny.obj                                             the same, on a model of yours
   translume render creature --medium jade -o creature.png
   translume render bunny.obj --medium skimmilk --size 1024 -o bunny.png
   translume render creature --medium wax --frames 48 -o morph.png      an animated PNG
@@ -41,6 +42,9 @@ pub struct Arguments {
 /// A command.
 #[derive(Debug, Subcommand)]
 pub enum Command {
+    /// Open a window on a model or a scene.
+    #[command(after_help = EXAMPLES)]
+    View(View),
     /// Render a model or a scene to a PNG (tone-mapped sRGB) or an EXR (linear radiance).
     #[command(after_help = EXAMPLES)]
     Render(Box<Render>),
@@ -56,6 +60,14 @@ pub enum Command {
     /// Measure speed and error against the CPU reference; writes tables and a plot.
     #[command(after_help = EXAMPLES)]
     Report(Report),
+}
+
+/// `translume view`.
+#[derive(Debug, Args)]
+pub struct View {
+    /// OBJ, glTF or GLB file, a scene (FILE.json), or the name of a built-in model. By default what was shown when the window was last closed.
+    #[arg(value_name = "MODEL|SCENE")]
+    pub name: Option<String>,
 }
 
 /// `translume render`.

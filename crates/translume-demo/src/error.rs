@@ -36,6 +36,8 @@ pub enum Error {
     Output { path: PathBuf, problem: String },
     #[error("{option}: {problem}")]
     Option { option: &'static str, problem: String },
+    #[error("the graphics driver has failed; save the scene and start the program again")]
+    Worker,
     #[error("no window can be opened: {0}; `translume --help` tells what works without one")]
     Window(String),
     #[error(

@@ -34,7 +34,8 @@ use std::process::ExitCode;
 pub fn main() -> ExitCode {
     env_logger::Builder::from_env(env_logger::Env::default().default_filter_or("error")).init();
     let result = match cli::Arguments::parse().command {
-        None => app::run(),
+        None => app::run(None),
+        Some(cli::Command::View(arguments)) => app::run(arguments.name.as_deref()),
         Some(cli::Command::Render(arguments)) => render::run(&arguments),
         Some(cli::Command::Inspect(arguments)) => inspect::run(&arguments),
         Some(cli::Command::Profile(arguments)) => profile::run(&arguments),

@@ -10,6 +10,8 @@ mod loaded;
 mod orbit;
 mod panels;
 mod playback;
+#[cfg(test)]
+mod tests;
 mod truth;
 mod viewport;
 mod worker;
@@ -110,8 +112,8 @@ pub struct App {
     view: viewport::Viewport,
 }
 
-/// Opens the window and stays until it is closed.
-pub fn run() -> Result<(), Error> {
+/// Opens the window, on a model or a scene if one is named, and stays until it is closed.
+pub fn run(name: Option<&str>) -> Result<(), Error> {
     let options = eframe::NativeOptions {
         viewport: egui::ViewportBuilder::default()
             .with_title("Translume")
@@ -121,7 +123,7 @@ pub fn run() -> Result<(), Error> {
             .with_drag_and_drop(true),
         ..Default::default()
     };
-    let start: eframe::AppCreator<'_> = Box::new(|context| Ok(Box::new(App::new(context, None))));
+    let start: eframe::AppCreator<'_> = Box::new(|context| Ok(Box::new(App::new(context, name))));
     eframe::run_native("translume", options, start).map_err(|error| Error::Window(error.to_string()))
 }
 
@@ -438,6 +440,10 @@ impl App {
 
     /// Asks for a file without keeping the window waiting.
     fn ask(&self, choice: Choice) {
+        // Nobody would answer.
+        if cfg!(test) {
+            return;
+        }
         let events = self.events.clone();
         std::thread::spawn(move || {
             if let Some(path) = panels::dialogue(choice) {
@@ -488,5 +494,6 @@ impl eframe::App for App {
         if let Some(exporting) = self.exporting.take() {
             exporting.end();
         }
+        self.frames.tell();
     }
 }

@@ -104,6 +104,7 @@ fn act(app: &mut App, ui: &egui::Ui, rect: Rect, response: &egui::Response) {
     let frame = orbit::Frame::of(&seen.camera.unwrap_or(camera));
     let pointer = response.interact_pointer_pos().or(response.hover_pos());
     let handles = handles(app, &frame, rect);
+    // A drag is known for one after some points of way.
     if response.drag_started_by(egui::PointerButton::Primary)
         && let Some(pointer) = ui.input(|input| input.pointer.press_origin())
     {

@@ -93,6 +93,7 @@ impl Worker {
         let (orders, inbox) = channel();
         let events = events.clone();
         std::thread::spawn(move || {
+            let _last_words = LastWords(events.clone());
             let easel = Gpu::new().and_then(|gpu| {
                 let Gpu { adapter, is_software, .. } = &gpu;
                 let adapter = Adapter { name: adapter.clone(), is_software: *is_software };
@@ -126,6 +127,17 @@ fn orders(inbox: &Receiver<Order>, is_idle: bool) -> Result<Vec<Order>, RecvErro
 
 /// The seat of what is exported.
 const EXPORT: usize = 2;
+
+/// Tells of a thread that ends before its time: wgpu panics where a driver is reset, say.
+struct LastWords(Events);
+
+impl Drop for LastWords {
+    fn drop(&mut self) {
+        if std::thread::panicking() {
+            self.0.send(Event::Ready(Err(Error::Worker)));
+        }
+    }
+}
 
 /// What the thread owns.
 struct Easel {

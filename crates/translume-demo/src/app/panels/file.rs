@@ -83,7 +83,13 @@ fn view(app: &mut App, ui: &mut egui::Ui) {
     if ui.button("Frame all").clicked() {
         app.frame_all();
     }
-    egui::widgets::global_theme_preference_buttons(ui);
+    ui.separator();
+    // In words: the fonts have no picture of a screen.
+    let mut theme = ui.ctx().options(|options| options.theme_preference);
+    ui.selectable_value(&mut theme, egui::ThemePreference::Light, "Light");
+    ui.selectable_value(&mut theme, egui::ThemePreference::Dark, "Dark");
+    ui.selectable_value(&mut theme, egui::ThemePreference::System, "As the system");
+    ui.ctx().set_theme(theme);
 }
 
 /// Asks where a file is; waits for the answer.

@@ -4,6 +4,7 @@ use super::super::worker::Shown;
 use eframe::egui;
 use egui_plot::{Corner, Legend, Line, Plot, PlotPoints};
 use std::collections::VecDeque;
+use std::time::Instant;
 use translume::{FrameTimings, Stage};
 
 /// Pictures that are remembered.
@@ -17,11 +18,20 @@ const SLOW: [Stage; 3] = [Stage::Shadow, Stage::Gather, Stage::Scatter];
 pub struct Frames {
     took: VecDeque<f32>,
     timings: VecDeque<FrameTimings>,
+    /// How many there were in all, and when the first and the last came.
+    count: u32,
+    came: Option<[Instant; 2]>,
 }
 
 impl Frames {
     pub fn add(&mut self, shown: &Shown) {
         keep(&mut self.took, 1e3 * shown.took.as_secs_f32());
+        let now = Instant::now();
+        if self.came.is_none() {
+            log::info!("the first picture is there");
+        }
+        self.came = Some([self.came.map_or(now, |[first, _]| first), now]);
+        self.count += 1;
         // What did nothing anew has the timings of the frame before.
         let newest = self.timings.back().map(|timings| timings.frame);
         if let Some(timings) = shown.timings.filter(|timings| newest != Some(timings.frame)) {
@@ -32,6 +42,15 @@ impl Frames {
     /// Median time of a picture, ms.
     pub fn median(&self) -> Option<f32> {
         quantile(self.took.iter().copied(), 0.5)
+    }
+
+    /// Pictures a second, in the log.
+    pub fn tell(&self) {
+        if let (Some([first, last]), Some(median)) = (self.came, self.median()) {
+            let (count, seconds) = (self.count, last.duration_since(first).as_secs_f32());
+            let rate = (count - 1) as f32 / seconds.max(1e-3);
+            log::info!("{count} pictures in {seconds:.1} s: {rate:.1} a second, median {median:.0} ms");
+        }
     }
 
     pub fn show(&self, ui: &mut egui::Ui) {

@@ -92,9 +92,8 @@ fn edit(ui: &mut egui::Ui, light: &mut SceneLight) {
         }
         SceneLight::Sphere { radius, .. } => {
             ui.horizontal(|ui| {
-                ui.label("radius");
-                let speed = 0.01 * *radius;
-                ui.add(DragValue::new(radius).speed(speed).range(1e-6..=1e6));
+                let (label, speed) = (ui.label("radius"), 0.01 * *radius);
+                ui.add(DragValue::new(radius).speed(speed).range(1e-6..=1e6)).labelled_by(label.id);
             });
         }
         _ => {}
@@ -111,12 +110,12 @@ fn colour(ui: &mut egui::Ui, rgb: &mut [f32; 3]) {
         let strength = rgb.iter().copied().fold(0.0, f32::max);
         let mut hue = if strength > 0.0 { rgb.map(|c| c / strength) } else { [1.0; 3] };
         let (mut strength, speed) = (strength, 0.01 * strength.max(0.01));
-        let changed = ui.color_edit_button_rgb(&mut hue).changed()
-            | ui.add(DragValue::new(&mut strength).speed(speed).range(0.0..=1e12)).changed();
-        if changed {
+        let hues = ui.color_edit_button_rgb(&mut hue);
+        let value = ui.add(DragValue::new(&mut strength).speed(speed).range(0.0..=1e12));
+        let value = value.labelled_by(ui.label("strength").id);
+        if hues.changed() || value.changed() {
             *rgb = hue.map(|c| c * strength);
         }
-        ui.label("strength");
     });
 }
 

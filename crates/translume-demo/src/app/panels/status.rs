@@ -6,7 +6,9 @@ use egui::{ProgressBar, RichText};
 
 pub fn show(app: &mut App, ui: &mut egui::Ui) {
     troubles(app, ui);
-    ui.horizontal_wrapped(|ui| {
+    // In one line, lest the picture's size depends on what is said.
+    ui.horizontal(|ui| {
+        let say = |ui: &mut egui::Ui, words: RichText| ui.add(egui::Label::new(words).truncate());
         if let Some(job) = &app.job {
             let bar = ProgressBar::new(job.share.unwrap_or(0.0)).text(job.stage).desired_width(200.0);
             ui.add(bar.animate(job.share.is_none()));
@@ -25,10 +27,10 @@ pub fn show(app: &mut App, ui: &mut egui::Ui) {
         match &app.adapter {
             None => ui.spinner(),
             Some(adapter) => {
-                ui.label(&adapter.name);
+                say(ui, RichText::new(&adapter.name));
                 if adapter.is_software {
                     let note = "the processor draws this: a graphics card is a hundred times faster";
-                    ui.label(RichText::new(note).color(ui.visuals().warn_fg_color));
+                    say(ui, RichText::new(note).color(ui.visuals().warn_fg_color));
                 }
                 ui.separator()
             }
@@ -38,7 +40,7 @@ pub fn show(app: &mut App, ui: &mut egui::Ui) {
         }
         if let Some(notice) = app.notices.last() {
             ui.separator();
-            ui.label(notice);
+            say(ui, RichText::new(notice));
         }
     });
 }
