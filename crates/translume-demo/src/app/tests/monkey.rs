@@ -15,8 +15,8 @@ use translume_mesh::builtin;
 
 /// Seconds that pass in the window, however long they take.
 const HOUR: f64 = 3600.0;
-/// Of the work before memory is looked at.
-const WARM: f64 = 1.0 / 3.0;
+/// So many times memory is looked at, the last time at the end; it counts from the second on, after a third.
+const LOOKS: usize = 6;
 
 static PANICS: AtomicUsize = AtomicUsize::new(0);
 
@@ -254,13 +254,13 @@ fn alone() {
     let seed = variable("TRANSLUME_MONKEY_SEED", 1.0) as u64;
     let mut monkey = Monkey::new(seed);
     let (start, began) = (Instant::now(), monkey.time());
-    let (mut acts, mut warm) = (0, None);
+    let (mut acts, mut looks) = (0, Vec::new());
     loop {
         let share = start.elapsed().as_secs_f64() / seconds;
-        if share > WARM && warm.is_none() {
-            warm = Some(monkey.at_rest());
+        if share * LOOKS as f64 >= (looks.len() + 1) as f64 {
+            looks.push(monkey.at_rest());
         }
-        if share >= 1.0 {
+        if looks.len() == LOOKS {
             break;
         }
         monkey.act();
@@ -271,20 +271,15 @@ fn alone() {
         assert_eq!(PANICS.load(Ordering::Relaxed), 0, "act {acts} of seed {seed}");
         std::thread::sleep(Duration::from_millis(1));
     }
-    let (end, warm) = (monkey.at_rest(), warm.unwrap_or(1.0));
-    let grown = end / warm - 1.0;
+    let grown = looks[LOOKS - 1] / looks[1] - 1.0;
     let pictures = monkey.window.app().frames.median();
     println!(
         "monkey: {acts} acts, {:.0} s of the window's time in {:.0} s, median picture {pictures:?} ms",
         monkey.time() - began,
         start.elapsed().as_secs_f64()
     );
-    println!(
-        "monkey: {:.1} MB after a third, {:.1} MB at the end, {:+.1} %",
-        warm / 1e6,
-        end / 1e6,
-        100.0 * grown
-    );
+    let megabytes: Vec<_> = looks.iter().map(|bytes| format!("{:.1}", bytes / 1e6)).collect();
+    println!("monkey: {} MB, {:+.1} % after a third", megabytes.join(", "), 100.0 * grown);
     assert_eq!(PANICS.load(Ordering::Relaxed), 0);
     // What is promised of an hour.
     assert!(grown < 0.05, "{grown}");
