@@ -284,3 +284,65 @@ fn alone() {
     // What is promised of an hour.
     assert!(grown < 0.05, "{grown}");
 }
+
+#[test]
+#[ignore = "tells what costs memory"]
+fn probe() {
+    let mut monkey = Monkey::new(1);
+    monkey.at_rest();
+    type Act = fn(&mut Monkey, usize);
+    let acts: [(&str, usize, Act); 8] = [
+        ("pictures", 200, |m, k| {
+            m.window.app_mut().scene.look.exposure = 0.01 * k as f32;
+            m.window.settle();
+        }),
+        ("media", 100, |m, k| {
+            m.window.app_mut().scene.medium = Some(["wax", "jade", "cream"][k % 3].to_owned());
+            m.window.settle();
+        }),
+        ("sizes", 60, |m, k| {
+            m.window.harness.set_size(Vec2::new(600.0 + 60.0 * (k % 5) as f32, 400.0));
+            m.window.settle();
+        }),
+        ("lights", 60, |m, k| {
+            if k % 2 == 0 {
+                m.window.app_mut().scene.lights.as_mut().unwrap().clear();
+                m.window.settle();
+            } else {
+                m.at_rest();
+            }
+        }),
+        ("methods", 60, |m, k| {
+            m.window.app_mut().scene.quality.method = ["tree", "dual", "pattern"][k % 3].to_owned();
+            m.window.settle();
+        }),
+        ("models", 40, |m, k| {
+            let file = m.files[k % 2].clone();
+            let before = m.window.app().loaded.as_ref().map(|loaded| loaded.id);
+            m.window.drop_file(&file);
+            m.window.until("model", |app| app.loaded.as_ref().map(|loaded| loaded.id) != before);
+            m.window.settle();
+        }),
+        ("overlays", 60, |m, k| {
+            m.window.app_mut().overlay = Overlay::ALL[k % 8].0;
+            m.window.settle();
+        }),
+        ("judges", 12, |m, _| {
+            m.window.app_mut().judged = None;
+            let (wish, events) = (m.window.app().ordered.clone().unwrap(), m.window.app().events.clone());
+            let task = crate::app::truth::Task::judge(wish.scene, wish.loaded, &events);
+            m.window.app_mut().judging = Some(task);
+            m.window.until("errors", |app| app.judged.is_some());
+        }),
+    ];
+    for (name, count, act) in acts {
+        let mut series = vec![monkey.at_rest()];
+        for part in 0..4 {
+            for k in 0..count / 4 {
+                act(&mut monkey, part * (count / 4) + k);
+            }
+            series.push(monkey.at_rest());
+        }
+        println!("{name} {count}: {:?}", series.iter().map(|x| (x / 1e5).round() / 10.0).collect::<Vec<_>>());
+    }
+}
