@@ -32,7 +32,7 @@ impl Developer {
         let settings = device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("develop settings"),
             size: SETTINGS_BYTES,
-            usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+            usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST,
             mapped_at_creation: false,
         });
         Self { pipeline, settings, bytes: None }

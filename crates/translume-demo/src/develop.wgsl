@@ -11,7 +11,8 @@ struct Settings {
     backdrop: vec2f,
 }
 
-@group(0) @binding(0) var<uniform> settings: Settings;
+// Not a uniform: where a loop's end is one, Mesa 22.3's lavapipe compiles the shader anew for every dispatch, and keeps it.
+@group(0) @binding(0) var<storage, read> settings: Settings;
 @group(0) @binding(1) var radiance: texture_2d<f32>;
 // RGBA, 8 bits each, row by row from the top.
 @group(0) @binding(2) var<storage, read_write> picture: array<u32>;

@@ -20,6 +20,7 @@ use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, RecvError, Sender, TryRecvError, channel};
+use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 use translume::{Camera, Frame, FrameTimings, Light, Lighting, Translume, View, readback};
 
@@ -85,14 +86,15 @@ pub struct Adapter {
 
 /// The window's end of the thread.
 pub struct Worker {
-    orders: Sender<Order>,
+    orders: Option<Sender<Order>>,
+    thread: Option<JoinHandle<()>>,
 }
 
 impl Worker {
     pub fn start(events: &Events) -> Self {
         let (orders, inbox) = channel();
         let events = events.clone();
-        std::thread::spawn(move || {
+        let thread = std::thread::spawn(move || {
             let _last_words = LastWords(events.clone());
             let easel = Gpu::new().and_then(|gpu| {
                 let Gpu { adapter, is_software, .. } = &gpu;
@@ -105,12 +107,20 @@ impl Worker {
                 Err(error) => events.send(Event::Ready(Err(error))),
             }
         });
-        Self { orders }
+        Self { orders: Some(orders), thread: Some(thread) }
     }
 
     pub fn order(&self, order: Order) {
         // A worker that has ended has told why.
-        let _ = self.orders.send(order);
+        let _ = self.orders.as_ref().map(|orders| orders.send(order));
+    }
+}
+
+/// Waits for the picture at hand: a driver that is unloaded while it draws takes the program down.
+impl Drop for Worker {
+    fn drop(&mut self) {
+        self.orders = None;
+        let _ = self.thread.take().map(JoinHandle::join);
     }
 }
 
