@@ -3,11 +3,14 @@
 //! The window's thread never waits: models are opened by [`loaded::Job`], pictures drawn by [`worker::Worker`], and both tell what
 //! they have done through [`events`]. What the picture shows is a [`Scene`], the same that `translume render --scene` takes.
 
+mod easel;
 mod events;
 mod export;
 mod ground;
+mod hear;
 mod loaded;
 mod orbit;
+mod order;
 mod panels;
 mod playback;
 #[cfg(test)]
@@ -24,22 +27,16 @@ use egui::util::undoer::Undoer;
 use events::{Choice, Event, Events};
 use export::{Exporting, Settings};
 use loaded::{Job, Loaded, Wanted};
-use playback::{Play, Playback};
+use playback::Playback;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::mpsc::Receiver;
 use truth::{Judged, Task, Traced};
-use worker::{Adapter, Counters, Order, Wish, Worker};
+use worker::{Adapter, Counters, Wish, Worker};
 
 /// What is shown first.
 const FIRST: &str = "creature";
-/// How long nothing may change before the picture gets finer, seconds.
-const STILL: f64 = 0.25;
-/// Samples along each side of a pixel of a picture that stands still.
-const FINE: u32 = 2;
-/// Pictures that take longer have half as many pixels each way while something moves.
-const SLOW_MS: f32 = 60.0;
 /// Files that are remembered.
 const RECENT: usize = 8;
 
@@ -241,176 +238,6 @@ impl App {
         }
     }
 
-    fn hear(&mut self, context: &egui::Context) {
-        while let Ok(event) = self.inbox.try_recv() {
-            match event {
-                Event::Ready(Ok(adapter)) => {
-                    self.adapter = Some(adapter);
-                    match self.first.take() {
-                        Some(First::Name(name)) => self.open(&name),
-                        Some(First::Scene(scene)) => {
-                            self.start(Wanted { scene: *scene, assumes_size: false }, true);
-                        }
-                        None => {}
-                    }
-                }
-                Event::Ready(Err(error)) => self.trouble(&error),
-                Event::Progress { job, stage, share } => {
-                    if let Some(current) = self.job.as_mut().filter(|current| current.is(job)) {
-                        (current.stage, current.share) = (stage, share);
-                    }
-                }
-                Event::Opened { job, result } if self.job.as_ref().is_some_and(|current| current.is(job)) => {
-                    self.job = None;
-                    match result {
-                        Ok(opened) => self.take(*opened),
-                        Err(error) => self.trouble(&error),
-                    }
-                }
-                Event::Opened { .. } => {}
-                Event::Shown(result) => {
-                    self.is_waiting = false;
-                    match result {
-                        Ok(shown) => {
-                            self.frames.add(&shown);
-                            self.good = self.asked.take();
-                            self.counters = shown.counters.or(self.counters);
-                            set(context, &mut self.picture, Some(shown.image));
-                            set(context, &mut self.other, shown.other);
-                            set(context, &mut self.atlas, shown.atlas);
-                        }
-                        Err(error) => {
-                            self.trouble(&error);
-                            self.go_back();
-                        }
-                    }
-                }
-                Event::Traced(task, result) if self.tracing.as_ref().is_some_and(|t| t.is(task)) => {
-                    match result {
-                        Ok(traced) => {
-                            set(context, &mut self.paths, Some(traced.image.clone()));
-                            if traced.done {
-                                self.tracing = None;
-                            }
-                            self.traced = Some(traced);
-                        }
-                        Err(error) => {
-                            self.tracing = None;
-                            self.trouble(&error);
-                        }
-                    }
-                }
-                Event::Judged(task, result) if self.judging.as_ref().is_some_and(|t| t.is(task)) => {
-                    self.judging = None;
-                    match result {
-                        Ok(judged) => self.judged = Some(judged),
-                        Err(error) => self.trouble(&error),
-                    }
-                }
-                Event::Traced(..) | Event::Judged(..) => {}
-                Event::Chosen(choice, path) => panels::chosen(self, choice, &path),
-                Event::Exporting { done } => {
-                    if let Some(exporting) = &mut self.exporting {
-                        exporting.done = done;
-                    }
-                }
-                Event::Exported(result) => {
-                    self.exporting = None;
-                    match result {
-                        Ok(Some(path)) => self.notices.push(format!("{} is written", path.display())),
-                        Ok(None) => self.notices.push("nothing is written".to_owned()),
-                        Err(error) => self.trouble(&error),
-                    }
-                }
-                Event::Written(Ok(path)) => self.notices.push(format!("{} is written", path.display())),
-                Event::Written(Err(error)) => self.trouble(&error),
-            }
-        }
-    }
-
-    /// To the last scene that could be shown.
-    fn go_back(&mut self) {
-        if let Some(good) = self.good.take() {
-            self.scene = Scene { camera: self.scene.camera, ..good };
-        }
-    }
-
-    fn take(&mut self, (scene, loaded): (Scene, Arc<Loaded>)) {
-        if self.replaces {
-            self.playback.phase = 0.0;
-            self.undoer = Undoer::default();
-            self.scene = scene;
-        } else {
-            let Scene { shape, up, into, quality, .. } = scene;
-            (self.scene.shape, self.scene.up, self.scene.into) = (shape, up, into);
-            self.scene.quality = quality;
-            self.scene.morph.truncate(loaded.opened.model.mesh.targets.len());
-        }
-        self.loaded = Some(loaded);
-    }
-
-    /// The scene as it stands at this moment, seen through a view of so many pixels.
-    fn moment(&self, loaded: &Loaded, pixels: [u32; 2]) -> Scene {
-        let mut scene = self.scene.clone();
-        let model = &loaded.opened.model;
-        self.playback.apply(Play::of(&scene, model), &mut scene, model.mesh.targets.len());
-        scene.camera = scene.camera.map(|camera| orbit::shaped(camera, pixels));
-        scene
-    }
-
-    fn play(&self) -> Option<Play> {
-        self.loaded.as_ref().map(|loaded| Play::of(&self.scene, &loaded.opened.model))
-    }
-
-    /// Asks for the next picture if anything is different in it.
-    fn order(&mut self, context: &egui::Context, now: f64) {
-        let (Some(loaded), Some(pixels)) = (self.loaded.clone(), self.view.pixels()) else { return };
-        if self.is_waiting {
-            return;
-        }
-        let scene = self.moment(&loaded, pixels);
-        let moving = self.playback.playing && self.play() != Some(Play::Turn);
-        let last = self.ordered.as_ref();
-        let errors = self.errors(&loaded);
-        let other = match &self.beside {
-            panels::Beside::Other(quality) => Some(quality.clone()),
-            _ => None,
-        };
-        // The camera knows the view's size.
-        let is_new = last.is_none_or(|last| {
-            (last.scene != scene || last.loaded.id != loaded.id)
-                || (last.overlay != self.overlay
-                    || last.other != other
-                    || !Arc::ptr_eq(&last.errors, &errors))
-        });
-        if is_new {
-            self.changed = now;
-        }
-        let is_still = !self.playback.playing && now - self.changed > STILL;
-        let samples = if is_still { FINE } else { 1 };
-        if !is_new && last.is_some_and(|last| last.samples >= samples) {
-            return;
-        }
-        if !is_new && !is_still {
-            return context.request_repaint_after_secs(STILL as f32);
-        }
-        let is_slow = self.frames.median().is_some_and(|ms| ms > SLOW_MS);
-        let pixels = if is_slow && !is_still { pixels.map(|pixels| pixels.div_ceil(2)) } else { pixels };
-        let wish = Wish { scene, loaded, pixels, samples, moving, overlay: self.overlay, errors, other };
-        self.worker.order(Order::Show(wish.clone()));
-        self.asked = Some(self.scene.clone());
-        (self.ordered, self.is_waiting) = (Some(wish), true);
-        if !is_still {
-            context.request_repaint_after_secs(STILL as f32);
-        }
-    }
-
-    /// Of this model's texels, where they were computed.
-    fn errors(&self, loaded: &Loaded) -> Arc<Vec<f32>> {
-        let judged = self.judged.as_ref().filter(|judged| judged.loaded == loaded.id);
-        judged.map_or_else(|| Arc::clone(&self.no_errors), |judged| Arc::clone(&judged.errors))
-    }
-
     /// Keeps changes for [`Self::undo`]; where the camera stands is not one.
     fn note(&mut self, now: f64) {
         let state = Scene { camera: None, ..self.scene.clone() };
@@ -450,16 +277,6 @@ impl App {
                 events.send(Event::Chosen(choice, path));
             }
         });
-    }
-}
-
-/// Puts an image into a texture that may have to be made.
-fn set(context: &egui::Context, texture: &mut Option<egui::TextureHandle>, image: Option<egui::ColorImage>) {
-    let options = egui::TextureOptions::LINEAR;
-    match (image, texture.as_mut()) {
-        (Some(image), Some(texture)) => texture.set(image, options),
-        (Some(image), None) => *texture = Some(context.load_texture("picture", image, options)),
-        (None, _) => *texture = None,
     }
 }
 
