@@ -22,7 +22,7 @@ pub enum Event {
         job: u64,
         result: Result<Box<(Scene, Arc<Loaded>)>, Error>,
     },
-    Shown(Result<Shown, Error>),
+    Shown(Result<Box<Shown>, Error>),
     /// Of the task with this number.
     Traced(u64, Result<Traced, Error>),
     Judged(u64, Result<Judged, Error>),

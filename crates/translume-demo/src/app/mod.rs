@@ -259,6 +259,7 @@ impl App {
                     self.is_waiting = false;
                     match result {
                         Ok(shown) => {
+                            let shown = *shown;
                             self.frames.add(&shown);
                             self.good = self.asked.take();
                             self.counters = shown.counters.or(self.counters);
@@ -403,7 +404,7 @@ impl App {
         let scene = Scene { camera: None, ..self.scene.clone() };
         match loaded.opened.subject(&scene, 1) {
             Ok(subject) => {
-                self.scene.camera = Some(crate::setup::camera(&scene, &subject, crate::setup::VIEW))
+                self.scene.camera = Some(crate::setup::camera(&scene, &subject, crate::setup::VIEW));
             }
             Err(error) => self.trouble(&error),
         }

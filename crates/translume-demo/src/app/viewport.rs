@@ -180,10 +180,10 @@ fn drag_light(app: &mut App, light: usize, frame: &orbit::Frame, drag: Vec2) {
     let target = Vec3::from(camera.target);
     match light {
         SceneLight::Point { position, .. } | SceneLight::Spot { position, .. } => {
-            *position = moved.to_array()
+            *position = moved.to_array();
         }
         SceneLight::Rectangle { center, .. } | SceneLight::Sphere { center, .. } => {
-            *center = moved.to_array()
+            *center = moved.to_array();
         }
         SceneLight::Directional { to_light: direction, .. } | SceneLight::CapEnv { axis: direction, .. } => {
             *direction = (moved - target).normalize_or(Vec3::Y).to_array();

@@ -107,7 +107,9 @@ impl Worker {
 
     pub fn order(&self, order: Order) {
         // A worker that has ended has told why.
-        let _ = self.orders.as_ref().map(|orders| orders.send(order));
+        if let Some(orders) = &self.orders {
+            let _ = orders.send(order);
+        }
     }
 }
 
@@ -175,7 +177,7 @@ impl Easel {
                 }
             }
             if let Some(wish) = newest {
-                events.send(Event::Shown(self.show(&wish)));
+                events.send(Event::Shown(self.show(&wish).map(Box::new)));
             }
         }
     }
@@ -207,7 +209,7 @@ impl Easel {
                 None
             }
         };
-        Ok(Shown { image, other, atlas, timings, counters, took })
+        Ok(Shown { image, other, atlas, counters, timings, took })
     }
 
     fn develop(&mut self, seat: usize, wish: &Wish) -> Result<egui::ColorImage, Error> {

@@ -14,7 +14,7 @@ const SHORTCUTS: &[(Modifiers, Key, &str, Action)] = &[
     (Modifiers::NONE, Key::F, "see all of the model", |app, _| app.frame_all()),
     (Modifiers::COMMAND, Key::O, "open a model, a scene or a sky", |app, _| app.ask(Choice::Open)),
     (Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::S, "save the scene", |app, _| {
-        app.ask(Choice::SaveScene)
+        app.ask(Choice::SaveScene);
     }),
     (Modifiers::COMMAND, Key::S, "save the picture", |app, _| app.ask(Choice::SavePicture)),
     (Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::C, "copy the scene as JSON", file::copy),
