@@ -1,7 +1,7 @@
 //! The GPU's thread: takes orders for pictures, the newest first, and never keeps the window waiting.
 
-use super::events::{Event, Events};
 use super::easel::Easel;
+use super::events::{Event, Events};
 use super::export::Export;
 use super::loaded::Loaded;
 use crate::error::Error;
@@ -105,7 +105,9 @@ impl Worker {
 
     pub fn order(&self, order: Order) {
         // A worker that has ended has told why.
-        let _ = self.orders.as_ref().map(|orders| orders.send(order));
+        if let Some(orders) = &self.orders {
+            let _ = orders.send(order);
+        }
     }
 }
 

@@ -36,6 +36,11 @@ fn variable(name: &str, otherwise: f64) -> f64 {
     std::env::var(name).ok().and_then(|text| text.parse().ok()).unwrap_or(otherwise)
 }
 
+/// Of this process, where Linux tells.
+fn threads() -> usize {
+    std::fs::read_dir("/proc/self/task").map_or(0, Iterator::count)
+}
+
 /// Splitmix64 (Steele, Lea and Flood 2014).
 struct Random(u64);
 
@@ -65,6 +70,8 @@ struct Monkey {
     random: Random,
     files: Vec<PathBuf>,
     size: Vec2,
+    /// At rest.
+    threads: Option<usize>,
 }
 
 impl Monkey {
@@ -84,7 +91,7 @@ impl Monkey {
             window.file("dark.exr", "no picture"),
             PathBuf::from("/nowhere/at.all.obj"),
         ];
-        Self { window, random: Random(seed), files, size: Vec2::new(720.0, 480.0) }
+        Self { window, random: Random(seed), files, size: Vec2::new(720.0, 480.0), threads: None }
     }
 
     /// Of the window, seconds.
@@ -237,6 +244,12 @@ impl Monkey {
         });
         self.window.app_mut().playback.phase = 0.0;
         self.window.settle();
+        // Work that was ended holds a device until it has seen that.
+        let start = Instant::now();
+        while threads() > *self.threads.get_or_insert_with(threads) {
+            assert!(start.elapsed() < Duration::from_secs(60), "threads stay behind");
+            std::thread::sleep(Duration::from_millis(20));
+        }
         let statm = std::fs::read_to_string("/proc/self/statm").unwrap_or_default();
         4096.0 * statm.split_whitespace().nth(1).and_then(|pages| pages.parse().ok()).unwrap_or(1.0)
     }
@@ -253,6 +266,7 @@ fn alone() {
     let seconds = variable("TRANSLUME_MONKEY_SECONDS", 20.0);
     let seed = variable("TRANSLUME_MONKEY_SEED", 1.0) as u64;
     let mut monkey = Monkey::new(seed);
+    monkey.at_rest();
     let (start, began) = (Instant::now(), monkey.time());
     let (mut acts, mut looks) = (0, Vec::new());
     loop {
@@ -283,66 +297,4 @@ fn alone() {
     assert_eq!(PANICS.load(Ordering::Relaxed), 0);
     // What is promised of an hour.
     assert!(grown < 0.05, "{grown}");
-}
-
-#[test]
-#[ignore = "tells what costs memory"]
-fn probe() {
-    let mut monkey = Monkey::new(1);
-    monkey.at_rest();
-    type Act = fn(&mut Monkey, usize);
-    let acts: [(&str, usize, Act); 8] = [
-        ("pictures", 200, |m, k| {
-            m.window.app_mut().scene.look.exposure = 0.01 * k as f32;
-            m.window.settle();
-        }),
-        ("media", 100, |m, k| {
-            m.window.app_mut().scene.medium = Some(["wax", "jade", "cream"][k % 3].to_owned());
-            m.window.settle();
-        }),
-        ("sizes", 60, |m, k| {
-            m.window.harness.set_size(Vec2::new(600.0 + 60.0 * (k % 5) as f32, 400.0));
-            m.window.settle();
-        }),
-        ("lights", 60, |m, k| {
-            if k % 2 == 0 {
-                m.window.app_mut().scene.lights.as_mut().unwrap().clear();
-                m.window.settle();
-            } else {
-                m.at_rest();
-            }
-        }),
-        ("methods", 60, |m, k| {
-            m.window.app_mut().scene.quality.method = ["tree", "dual", "pattern"][k % 3].to_owned();
-            m.window.settle();
-        }),
-        ("models", 40, |m, k| {
-            let file = m.files[k % 2].clone();
-            let before = m.window.app().loaded.as_ref().map(|loaded| loaded.id);
-            m.window.drop_file(&file);
-            m.window.until("model", |app| app.loaded.as_ref().map(|loaded| loaded.id) != before);
-            m.window.settle();
-        }),
-        ("overlays", 60, |m, k| {
-            m.window.app_mut().overlay = Overlay::ALL[k % 8].0;
-            m.window.settle();
-        }),
-        ("judges", 12, |m, _| {
-            m.window.app_mut().judged = None;
-            let (wish, events) = (m.window.app().ordered.clone().unwrap(), m.window.app().events.clone());
-            let task = crate::app::truth::Task::judge(wish.scene, wish.loaded, &events);
-            m.window.app_mut().judging = Some(task);
-            m.window.until("errors", |app| app.judged.is_some());
-        }),
-    ];
-    for (name, count, act) in acts {
-        let mut series = vec![monkey.at_rest()];
-        for part in 0..4 {
-            for k in 0..count / 4 {
-                act(&mut monkey, part * (count / 4) + k);
-            }
-            series.push(monkey.at_rest());
-        }
-        println!("{name} {count}: {:?}", series.iter().map(|x| (x / 1e5).round() / 10.0).collect::<Vec<_>>());
-    }
 }

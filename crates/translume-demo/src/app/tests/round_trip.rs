@@ -26,7 +26,7 @@ fn pixels(path: &Path) -> Vec<[f32; 3]> {
         path,
         |size, _| (size.width(), vec![[0.0_f32; 3]; size.area()]),
         |(width, pixels), at, (r, g, b, _): (f32, f32, f32, f32)| {
-            pixels[at.y() * *width + at.x()] = [r, g, b]
+            pixels[at.y() * *width + at.x()] = [r, g, b];
         },
     );
     image.unwrap().layer_data.channel_data.pixels.1
