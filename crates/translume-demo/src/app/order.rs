@@ -11,7 +11,7 @@ use std::sync::Arc;
 /// How long nothing may change before the picture gets finer, seconds.
 const STILL: f64 = 0.25;
 /// Samples along each side of a pixel of a picture that stands still.
-const FINE: u32 = 2;
+pub const FINE: u32 = 2;
 /// Pictures that take longer have half as many pixels each way while something moves.
 const SLOW_MS: f32 = 60.0;
 

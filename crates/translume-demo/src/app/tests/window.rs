@@ -1,6 +1,7 @@
 //! A window that is not on a screen, and hands for it.
 
-use super::super::{App, FINE};
+use super::super::App;
+use super::super::order::FINE;
 use eframe::egui;
 use egui::accesskit::Role;
 use egui::{Key, Modifiers, Pos2, Rect, TextureId, Vec2};
