@@ -1,10 +1,11 @@
 //! What pictures are drawn into: a texture of radiance and coverage, and depth.
 
+use std::sync::Arc;
 use translume::{Composite, CompositeTarget, CompositeView, Translume, wgpu};
 
 /// Off screen, linear, full float.
 pub struct Canvas {
-    pub composite: Composite,
+    pub composite: Arc<Composite>,
     pub colour: wgpu::Texture,
     depth: wgpu::TextureView,
 }
@@ -13,15 +14,23 @@ impl Canvas {
     pub const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
     pub const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 
-    pub fn new(device: &wgpu::Device, translume: &Translume, [width, height]: [u32; 2]) -> Self {
+    /// The pipelines of every canvas of a device.
+    pub fn composite(device: &wgpu::Device, translume: &Translume) -> Arc<Composite> {
         let target = CompositeTarget {
             format: Self::FORMAT,
             depth: Some((Self::DEPTH, wgpu::CompareFunction::Less)),
             samples: 1,
         };
+        Arc::new(translume.composite(device, target))
+    }
+
+    pub fn new(device: &wgpu::Device, composite: &Arc<Composite>, [width, height]: [u32; 2]) -> Self {
         let [colour, depth] = attachments(device, [width, height]);
-        let composite = translume.composite(device, target);
-        Self { composite, colour, depth: depth.create_view(&wgpu::TextureViewDescriptor::default()) }
+        Self {
+            composite: Arc::clone(composite),
+            colour,
+            depth: depth.create_view(&wgpu::TextureViewDescriptor::default()),
+        }
     }
 
     /// Forgets what was drawn if the size changes.

@@ -1,6 +1,7 @@
 //! `translume render`: a model or a scene becomes a picture.
 
 use crate::albedo::Albedo;
+use crate::canvas::Canvas;
 use crate::cli::{Render, put};
 use crate::environment::Environment;
 use crate::error::Error;
@@ -55,7 +56,9 @@ pub fn run(arguments: &Render) -> Result<(), Error> {
     let descriptor = substance.descriptor(mesh, &atlas, opened.flat_normals);
     let samples = arguments.samples.unwrap_or(output.format.samples());
     let translume = Translume::new(&gpu.device)?;
-    let mut studio = Studio::new(&gpu, &translume, &descriptor, [camera.width, camera.height], samples)?;
+    let composite = Canvas::composite(&gpu.device, &translume);
+    let mut studio =
+        Studio::new(&gpu, (&translume, &composite), &descriptor, [camera.width, camera.height], samples)?;
     let variations = albedo.map(|albedo| albedo.variations(mesh, &atlas));
     studio.body_mut().set_variation(&gpu.queue, variations.as_deref())?;
     studio.body_mut().set_timings(arguments.timings);

@@ -4,7 +4,10 @@ use crate::canvas::Canvas;
 use crate::error::Error;
 use crate::gpu::Gpu;
 use crate::picture::{Develop, Picture};
-use translume::{Body, BodyDescriptor, Camera, CompositeView, Frame, Gloss, Translume, readback, wgpu};
+use std::sync::Arc;
+use translume::{
+    Body, BodyDescriptor, Camera, Composite, CompositeView, Frame, Gloss, Translume, readback, wgpu,
+};
 
 /// A body in front of a camera, off screen.
 pub struct Studio {
@@ -19,14 +22,14 @@ impl Studio {
     /// Uploads the body; pictures will be `width` × `height` pixels of `samples`² samples each.
     pub fn new(
         gpu: &Gpu,
-        translume: &Translume,
+        (translume, composite): (&Translume, &Arc<Composite>),
         descriptor: &BodyDescriptor<'_>,
         [width, height]: [u32; 2],
         samples: u32,
     ) -> Result<Self, Error> {
         check_size(gpu, [width, height], samples)?;
         let body = translume.create_body(&gpu.device, descriptor)?;
-        let canvas = Canvas::new(&gpu.device, translume, [width * samples, height * samples]);
+        let canvas = Canvas::new(&gpu.device, composite, [width * samples, height * samples]);
         let view = canvas.composite.view(&gpu.device, &body);
         Ok(Self { gpu: gpu.clone(), body, canvas, view, samples })
     }

@@ -5,6 +5,7 @@ use super::export::Export;
 use super::loaded::Loaded;
 use super::worker::{Counters, Order, Shown, Wish};
 use crate::albedo;
+use crate::canvas::Canvas;
 use crate::develop::Developer;
 use crate::error::Error;
 use crate::framing::Subject;
@@ -22,7 +23,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, RecvError, TryRecvError};
 use std::time::Instant;
-use translume::{Camera, Frame, Light, Lighting, Translume, View, readback};
+use translume::{Camera, Composite, Frame, Light, Lighting, Translume, View, readback};
 
 /// The seat of what is exported.
 const EXPORT: usize = 2;
@@ -31,6 +32,7 @@ const EXPORT: usize = 2;
 pub struct Easel {
     gpu: Gpu,
     translume: Translume,
+    composite: Arc<Composite>,
     developer: Developer,
     painter: Painter,
     /// Of the picture, of the one beside it, and of what is exported.
@@ -59,7 +61,8 @@ impl Easel {
     pub fn new(gpu: Gpu) -> Result<Self, Error> {
         let translume = Translume::new(&gpu.device)?;
         let (developer, painter) = (Developer::new(&gpu.device), Painter::new(&gpu.device));
-        Ok(Self { gpu, translume, developer, painter, seats: [None, None, None] })
+        let composite = Canvas::composite(&gpu.device, &translume);
+        Ok(Self { gpu, translume, composite, developer, painter, seats: [None, None, None] })
     }
 
     /// Works until the window is closed.
@@ -220,7 +223,8 @@ impl Easel {
             None => {
                 let Loaded { opened, atlas, .. } = &**loaded;
                 let descriptor = substance.descriptor(&opened.model.mesh, atlas, opened.flat_normals);
-                let mut studio = Studio::new(&self.gpu, &self.translume, &descriptor, pixels, samples)?;
+                let mut studio =
+                    Studio::new(&self.gpu, (&self.translume, &self.composite), &descriptor, pixels, samples)?;
                 studio.body_mut().set_timings(true);
                 let outlines = Outlines::new(&self.gpu.device, atlas);
                 let lights = slot.take().map(|seat| seat.lights).unwrap_or_default();

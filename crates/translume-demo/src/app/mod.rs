@@ -32,7 +32,7 @@ use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::mpsc::Receiver;
-use truth::{Judged, Task, Traced};
+use truth::{Court, Judged, Task, Traced};
 use worker::{Adapter, Counters, Wish, Worker};
 
 /// What is shown first.
@@ -89,6 +89,7 @@ pub struct App {
     shows_atlas: bool,
     counters: Option<Counters>,
     judging: Option<Task>,
+    court: Court,
     judged: Option<Judged>,
     no_errors: Arc<Vec<f32>>,
     beside: panels::Beside,
@@ -156,6 +157,7 @@ impl App {
             shows_atlas: true,
             counters: None,
             judging: None,
+            court: Court::default(),
             judged: None,
             no_errors: Arc::default(),
             beside: panels::Beside::Nothing,

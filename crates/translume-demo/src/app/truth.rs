@@ -15,8 +15,8 @@ use eframe::egui;
 use glam::Vec3;
 use std::f32::consts::PI;
 use std::path::Path;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Instant;
 use translume::{Body, Frame, Lighting, Translume, readback, wgpu};
 
@@ -50,6 +50,9 @@ pub struct Judged {
     pub most: f32,
     pub seconds: f64,
 }
+
+/// Where scatters are judged, once the first was: drivers keep some of the memory of every device that there was.
+pub type Court = Arc<Mutex<Option<(Gpu, Translume)>>>;
 
 /// Work that ends when it is dropped.
 pub struct Task {
@@ -107,10 +110,10 @@ impl Task {
     }
 
     /// Holds the scatter of a scene against all pairs, on a device of its own, as that may take minutes.
-    pub fn judge(scene: Scene, loaded: Arc<Loaded>, events: &Events) -> Self {
-        let events = events.clone();
+    pub fn judge(scene: Scene, loaded: Arc<Loaded>, court: &Court, events: &Events) -> Self {
+        let (court, events) = (Arc::clone(court), events.clone());
         Self::start(move |number, cancelled| {
-            let result = judge(&scene, &loaded);
+            let result = judge(&scene, &loaded, &court);
             if !cancelled.load(Ordering::Relaxed) {
                 events.send(Event::Judged(number, result));
             }
@@ -148,10 +151,15 @@ fn with_extent(mut scene: Scene) -> Result<(Scene, bool), Error> {
     Ok((scene, any))
 }
 
-fn judge(scene: &Scene, loaded: &Loaded) -> Result<Judged, Error> {
+fn judge(scene: &Scene, loaded: &Loaded, court: &Court) -> Result<Judged, Error> {
     let start = Instant::now();
-    let gpu = Gpu::new()?;
-    let translume = Translume::new(&gpu.device)?;
+    let mut court = court.lock().unwrap_or_else(PoisonError::into_inner);
+    if court.is_none() {
+        let gpu = Gpu::new()?;
+        let translume = Translume::new(&gpu.device)?;
+        *court = Some((gpu, translume));
+    }
+    let Some((gpu, translume)) = &*court else { return Err(Error::Worker) };
     let opened = &loaded.opened;
     let motion = Motion::new(&opened.model, &scene.wish(), 1)?;
     let moment = motion.moment(0);
@@ -177,7 +185,7 @@ fn judge(scene: &Scene, loaded: &Loaded) -> Result<Judged, Error> {
         let mut body = translume.create_body(&gpu.device, &descriptor)?;
         let laid = (&opened.model.mesh, &loaded.atlas);
         albedo::apply(&mut body, &gpu.queue, scene.albedo.as_deref(), laid)?;
-        exitance(&gpu, &mut body, &frame)
+        exitance(gpu, &mut body, &frame)
     };
     let errors = overlay::errors(&exitance(&substance)?, &exitance(&exact)?);
     let rms = (errors.iter().map(|error| error * error).sum::<f32>() / errors.len().max(1) as f32).sqrt();

@@ -152,7 +152,8 @@ fn paths(app: &mut App, ui: &mut egui::Ui) {
 impl App {
     fn judge(&mut self) {
         if let Some(wish) = &self.ordered {
-            self.judging = Some(Task::judge(wish.scene.clone(), wish.loaded.clone(), &self.events));
+            self.judging =
+                Some(Task::judge(wish.scene.clone(), wish.loaded.clone(), &self.court, &self.events));
         }
     }
 

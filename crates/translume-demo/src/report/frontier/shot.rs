@@ -53,7 +53,7 @@ impl<'a> Shot<'a> {
             translume,
             stage,
             repeats: Repeats { warm_up: 0, timed: 1 },
-            canvas: Canvas::new(&gpu.device, translume, stage.pixels()),
+            canvas: Canvas::new(&gpu.device, &Canvas::composite(&gpu.device, translume), stage.pixels()),
             bodies: BTreeMap::new(),
             frames: 0,
         }
