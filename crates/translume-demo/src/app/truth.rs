@@ -93,7 +93,8 @@ impl Task {
                 let image = egui::ColorImage::from_rgb(size, &picture.to_srgb());
                 Traced { image, noise, seconds: start.elapsed().as_secs_f64(), widened, done }
             };
-            let limits = Limits { noise: Some(NOISE), seconds: None, samples: None, seed: 1 };
+            let limits =
+                Limits { noise: Some(NOISE), seconds: None, samples: None, seed: 1, stop: Some(cancelled) };
             let result = Subject::new(&scene, &loaded.opened, Some(WIDTH)).and_then(|subject| {
                 trace(&subject, &limits, |status| {
                     let estimate = status.estimate;

@@ -93,7 +93,9 @@ fn pictures(app: &mut App, ui: &mut egui::Ui, rect: Rect) {
     let hand = ui
         .interact(bar, ui.scope_id().with("split"), Sense::drag())
         .on_hover_cursor(egui::CursorIcon::ResizeHorizontal);
-    app.view.split = (app.view.split + hand.drag_delta().x / rect.width()).clamp(0.02, 0.98);
+    // Side panels may leave no width at all.
+    let moved = hand.drag_delta().x / rect.width().max(1.0);
+    app.view.split = (app.view.split + moved).clamp(0.02, 0.98);
 }
 
 fn act(app: &mut App, ui: &egui::Ui, rect: Rect, response: &egui::Response) {

@@ -9,6 +9,7 @@ use crate::error::Error;
 use crate::picture::{Format, Output, Picture};
 use crate::progress;
 use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 use translume_reference::path::{Closed, Estimate, PathTracer, Shape};
 
@@ -23,7 +24,7 @@ const WRITES: Duration = Duration::from_secs(5);
 
 /// When the work ends: whatever is reached first.
 #[derive(Clone, Copy, Debug)]
-pub struct Limits {
+pub struct Limits<'a> {
     /// [`Estimate::noise`].
     pub noise: Option<f64>,
     /// Wall time; the pass that is under way then ends early.
@@ -31,6 +32,8 @@ pub struct Limits {
     /// Paths of an average pixel in each channel. Alone, every pixel gets as many.
     pub samples: Option<u32>,
     pub seed: u64,
+    /// Ends the work as soon as it is set, whatever there is by then.
+    pub stop: Option<&'a AtomicBool>,
 }
 
 /// How far the work has come.
@@ -44,7 +47,7 @@ pub struct Status<'a> {
 /// Follows paths until a limit is reached or `proceed` returns `false`; it hears of every pass.
 pub fn trace(
     subject: &Subject,
-    limits: &Limits,
+    limits: &Limits<'_>,
     mut proceed: impl FnMut(&Status<'_>) -> bool,
 ) -> Result<Estimate, Error> {
     let closed;
@@ -59,7 +62,9 @@ pub fn trace(
     let tracer = PathTracer::new(shape, subject.volume, &subject.lights)?;
     let mut trace = tracer.trace(subject.camera, limits.seed);
     let start = Instant::now();
-    let in_time = || limits.seconds.is_none_or(|seconds| start.elapsed().as_secs_f64() < seconds);
+    let is_stopped = || limits.stop.is_some_and(|stop| stop.load(Ordering::Relaxed));
+    let in_time =
+        || !is_stopped() && limits.seconds.is_none_or(|seconds| start.elapsed().as_secs_f64() < seconds);
     if limits.noise.is_some() || limits.seconds.is_some() {
         // A pilot that used up the time is the picture.
         if !(0..PILOT).all(|_| trace.pass(1, |_| in_time())) {
@@ -71,7 +76,7 @@ pub fn trace(
     loop {
         let next = limits.samples.map_or(PASS, |most| PASS.min(most - samples));
         // The first pass cannot be cut short, or pixels would have no path at all.
-        let whole = trace.pass(next, |_| samples == 0 || in_time());
+        let whole = trace.pass(next, |_| samples == 0 && !is_stopped() || in_time());
         samples += next;
         let estimate = trace.estimate();
         let noise = estimate.noise();
@@ -115,7 +120,7 @@ pub fn run(arguments: &cli::Trace) -> Result<(), Error> {
     Ok(())
 }
 
-fn limits(arguments: &cli::Trace) -> Result<Limits, Error> {
+fn limits(arguments: &cli::Trace) -> Result<Limits<'static>, Error> {
     for (option, value) in [("--noise", arguments.noise), ("--seconds", arguments.seconds)] {
         if let Some(value) = value.filter(|value| !(*value > 0.0 && value.is_finite())) {
             return Err(Error::Option { option, problem: format!("{value} is not a positive number") });
@@ -123,11 +128,11 @@ fn limits(arguments: &cli::Trace) -> Result<Limits, Error> {
     }
     let cli::Trace { noise, seconds, samples, seed, .. } = *arguments;
     let is_endless = noise.is_none() && seconds.is_none() && samples.is_none();
-    Ok(Limits { noise: if is_endless { Some(0.05) } else { noise }, seconds, samples, seed })
+    Ok(Limits { noise: if is_endless { Some(0.05) } else { noise }, seconds, samples, seed, stop: None })
 }
 
 /// The bar is the nearest end: noise falls with the square root of the work.
-fn show(bar: &indicatif::ProgressBar, limits: &Limits, status: &Status<'_>, seconds: f64) {
+fn show(bar: &indicatif::ProgressBar, limits: &Limits<'_>, status: &Status<'_>, seconds: f64) {
     let shares = [
         limits.noise.map(|enough| (enough / status.noise).powi(2)),
         limits.seconds.map(|most| seconds / most),

@@ -235,6 +235,7 @@ fn follow(subject: &trace::Subject, patience: Patience) -> Result<Traced, Error>
         seconds: Some(patience.most.as_secs_f64()),
         samples: None,
         seed: 1,
+        stop: None,
     };
     let mut samples = 0;
     let estimate = trace::trace(subject, &limits, |status| {
