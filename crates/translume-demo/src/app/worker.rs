@@ -17,6 +17,9 @@ use std::thread::JoinHandle;
 use std::time::Duration;
 use translume::FrameTimings;
 
+/// What a window that closes waits for at most.
+const PATIENCE: Duration = Duration::from_secs(5);
+
 /// What the window wants.
 pub enum Order {
     /// A picture on the screen; only the newest such order counts.
@@ -80,7 +83,7 @@ pub struct Adapter {
 /// The window's end of the thread.
 pub struct Worker {
     orders: Option<Sender<Order>>,
-    thread: Option<JoinHandle<()>>,
+    thread: JoinHandle<()>,
 }
 
 impl Worker {
@@ -100,7 +103,7 @@ impl Worker {
                 Err(error) => events.send(Event::Ready(Err(error))),
             }
         });
-        Self { orders: Some(orders), thread: Some(thread) }
+        Self { orders: Some(orders), thread }
     }
 
     pub fn order(&self, order: Order) {
@@ -111,11 +114,14 @@ impl Worker {
     }
 }
 
-/// Waits for the picture at hand: a driver that is unloaded while it draws takes the program down.
+/// Waits for the picture at hand: a driver that is unloaded while it draws takes the program down. All pairs are not waited for.
 impl Drop for Worker {
     fn drop(&mut self) {
         self.orders = None;
-        let _ = self.thread.take().map(JoinHandle::join);
+        let start = Instant::now();
+        while !self.thread.is_finished() && start.elapsed() < PATIENCE {
+            std::thread::sleep(Duration::from_millis(5));
+        }
     }
 }
 
