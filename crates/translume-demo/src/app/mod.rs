@@ -291,6 +291,8 @@ impl eframe::App for App {
             self.playback.advance(play, (now - self.drawn).clamp(0.0, 1.0) as f32);
         }
         self.drawn = now;
+        // The last one is shown.
+        self.notices.drain(..self.notices.len().saturating_sub(1));
         panels::keys(self, &context);
         let dropped = context.input(|input| input.raw.dropped_files.clone());
         for path in dropped.iter().map(|file| file.path().to_owned()) {
