@@ -37,6 +37,8 @@ use worker::{Adapter, Counters, Wish, Worker};
 
 /// What is shown first.
 const FIRST: &str = "creature";
+/// What was done that is remembered.
+const NOTICES: usize = 8;
 /// Files that are remembered.
 const RECENT: usize = 8;
 
@@ -292,7 +294,7 @@ impl eframe::App for App {
         }
         self.drawn = now;
         // The last one is shown.
-        self.notices.drain(..self.notices.len().saturating_sub(1));
+        self.notices.drain(..self.notices.len().saturating_sub(NOTICES));
         panels::keys(self, &context);
         let dropped = context.input(|input| input.raw.dropped_files.clone());
         for path in dropped.iter().map(|file| file.path().to_owned()) {

@@ -135,9 +135,9 @@ impl Monkey {
 
     /// Everything once, so that what is kept for the next time is there: the first other model costs 60 MB, and forty more nothing.
     fn warm_up(&mut self) {
-        for file in self.files[..4].to_vec() {
+        for file in &self.files[..4] {
             let before = self.window.app().loaded.as_ref().map(|loaded| loaded.id);
-            self.window.drop_file(&file);
+            self.window.drop_file(file);
             self.window.until("the model", |app| app.loaded.as_ref().map(|loaded| loaded.id) != before);
             for method in ["tree", "pattern", "dual"] {
                 self.window.app_mut().scene.quality.method = method.to_owned();
