@@ -5,6 +5,7 @@ use crate::progress;
 use glam::{Mat4, Vec3};
 use std::f32::consts::FRAC_PI_2;
 use std::path::Path;
+use std::sync::OnceLock;
 use translume_mesh::repair::{RepairOptions, repair_with};
 use translume_mesh::rig::{self, Animation, Pose, Rig};
 use translume_mesh::spherical::{EggOptions, to_egg};
@@ -21,13 +22,15 @@ pub struct Model {
     pub rig: Rig,
     /// From the rig's model space to the mesh's: they differ when the mesh alone was turned.
     turn: Mat4,
+    /// Of the file's own pose, once they were asked for: every picture needs them, and posing takes milliseconds.
+    bounds: OnceLock<([f32; 3], [f32; 3])>,
 }
 
 impl Model {
     fn new(mesh: Mesh, repairs: RepairReport, rig: Option<Rig>) -> Self {
         let weights = vec![0.0; mesh.targets.len()];
         let rig = rig.unwrap_or_else(|| Rig { weights, ..Rig::default() });
-        Self { mesh, repairs, rig, turn: Mat4::IDENTITY }
+        Self { mesh, repairs, rig, turn: Mat4::IDENTITY, bounds: OnceLock::new() }
     }
 
     /// A pose of the mesh by a rig that is this model's but for its weights.
@@ -42,11 +45,14 @@ impl Model {
 
     /// Corners of a box around the model as its file shows it.
     pub fn bounds(&self) -> Result<([f32; 3], [f32; 3]), Error> {
+        if let Some(known) = self.bounds.get() {
+            return Ok(*known);
+        }
         let posed = rig::posed(&self.mesh, &self.pose(&self.rig, None, 0.0))?;
         let points = posed.into_iter().map(Vec3::from);
         let around = |(low, high): (Vec3, Vec3), p| (low.min(p), high.max(p));
         let (low, high) = points.fold((Vec3::INFINITY, Vec3::NEG_INFINITY), around);
-        Ok((low.to_array(), high.to_array()))
+        Ok(*self.bounds.get_or_init(|| (low.to_array(), high.to_array())))
     }
 
     /// From corner to corner of that box.
@@ -79,7 +85,7 @@ impl Model {
         }
         let options = RepairOptions { fill_holes: max_edges, ..RepairOptions::default() };
         let (mesh, repairs) = repair_with(self.mesh, &options)?;
-        Ok(Self { mesh, repairs, ..self })
+        Ok(Self { mesh, repairs, bounds: OnceLock::new(), ..self })
     }
 
     /// Numbers and names of the animations, to choose from.
@@ -97,6 +103,7 @@ impl Model {
         for vector in positions.iter_mut().chain(normals).chain(deltas) {
             *vector = [vector[0], vector[2], -vector[1]];
         }
+        self.bounds = OnceLock::new();
         self.turn = Mat4::from_rotation_x(-FRAC_PI_2);
     }
 }

@@ -5,6 +5,7 @@ use crate::canvas::Canvas;
 use crate::cli::{Render, put};
 use crate::environment::Environment;
 use crate::error::Error;
+use crate::framing::Subject;
 use crate::gpu::Gpu;
 use crate::model;
 use crate::motion::Motion;
@@ -44,7 +45,7 @@ pub fn run(arguments: &Render) -> Result<(), Error> {
     }
     let motion = Motion::new(&opened.model, &scene.wish(), arguments.frames).map_err(blame)?;
     output.frame_seconds = motion.frame_seconds().unwrap_or(output.frame_seconds);
-    let subject = opened.subject(&scene, arguments.frames).map_err(blame)?;
+    let subject = Subject::new(motion.points().map_err(blame)?);
     let camera = camera(&scene, &subject, arguments.view);
     let camera = arguments.size.map_or(camera, |width| camera.resized(width));
     let albedo = scene.albedo.as_ref().map(|file| Albedo::open(file, mesh)).transpose()?;

@@ -32,9 +32,9 @@ impl Opened {
         -1e-4 * self.model.mesh.diagonal()
     }
 
-    /// Where the surface is at some time or other of `frames`.
-    pub fn subject(&self, scene: &Scene, frames: u32) -> Result<Subject, Error> {
-        Ok(Subject::new(Motion::new(&self.model, &scene.wish(), frames)?.points()?))
+    /// Where the surface is.
+    pub fn subject(&self, scene: &Scene) -> Result<Subject, Error> {
+        Ok(Subject::new(Motion::new(&self.model, &scene.wish(), 1)?.points()?))
     }
 
     /// The scene's lights, or ones that suit it seen from `view`.

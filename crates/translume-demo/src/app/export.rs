@@ -1,7 +1,6 @@
 //! One round of what is played, frame by frame into files, while the window goes on.
 
 use super::loaded::Loaded;
-use super::orbit;
 use super::playback::{Play, Playback};
 use super::worker::Wish;
 use crate::error::Error;
@@ -122,14 +121,10 @@ impl Export {
 
     /// The frame to draw next, or `None` where all are there.
     pub fn next(&self) -> Option<Wish> {
+        let phase = self.done as f32 / self.total as f32;
+        let playback = Playback { playing: true, phase, ..Playback::default() };
         (self.done < self.total).then(|| Wish {
-            scene: moment(
-                &self.scene,
-                self.play,
-                &self.loaded,
-                self.done as f32 / self.total as f32,
-                self.pixels,
-            ),
+            scene: playback.moment(&self.scene, &self.loaded.opened.model, self.pixels),
             loaded: Arc::clone(&self.loaded),
             pixels: self.pixels,
             samples: self.format().samples(),
@@ -157,15 +152,6 @@ impl Export {
             Files::Numbered(numbered) => numbered.finish(),
         }
     }
-}
-
-/// A scene as it is played at a phase of its round.
-fn moment(scene: &Scene, play: Play, loaded: &Loaded, phase: f32, pixels: [u32; 2]) -> Scene {
-    let mut scene = scene.clone();
-    let playback = Playback { playing: true, phase, ..Playback::default() };
-    playback.apply(play, &mut scene, loaded.opened.model.mesh.targets.len());
-    scene.camera = scene.camera.map(|camera| orbit::shaped(camera, pixels));
-    scene
 }
 
 #[cfg(test)]

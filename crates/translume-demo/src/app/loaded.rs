@@ -1,13 +1,14 @@
 //! Models on their way into the window: read, repaired and unwrapped beside it.
 
 use super::events::{Event, Events};
+use super::task::Task;
 use crate::error::Error;
 use crate::model::Watch;
 use crate::render::{ASSUMED_DIAGONAL_MM, DEFAULT_ROUGHNESS};
 use crate::scene::{Quality, Round, Scene, SceneLight, Shape, Up};
 use crate::setup::{Opened, VIEW, camera};
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::atomic::Ordering;
 use std::sync::{Arc, Mutex};
 use translume_mesh::{Atlas, Progress};
 
@@ -65,27 +66,22 @@ pub struct Wanted {
     pub assumes_size: bool,
 }
 
-/// Work under way, and how to end it.
+/// The opening of a model, which ends when it is dropped.
 pub struct Job {
     pub stage: &'static str,
     /// 0..=1, where known.
     pub share: Option<f32>,
-    number: u64,
-    cancelled: Arc<AtomicBool>,
+    task: Task,
 }
 
 impl Job {
     /// Opens the model of a scene beside the window. `known` is kept as far as it fits.
     pub fn start(wanted: Wanted, known: Option<&Arc<Loaded>>, events: &Events) -> Self {
-        static NUMBER: AtomicU64 = AtomicU64::new(1);
-        let number = NUMBER.fetch_add(1, Ordering::Relaxed);
-        let cancelled = Arc::new(AtomicBool::new(false));
         let known = known
             .filter(|known| known.mesh == MeshKey::of(&wanted.scene))
             .map(|known| Arc::clone(&known.opened));
-        let job = Self { stage: "starting", share: None, number, cancelled: Arc::clone(&cancelled) };
         let events = events.clone();
-        std::thread::spawn(move || {
+        let task = Task::start(move |number, cancelled| {
             let last = Mutex::new("");
             let watch = |Progress { stage, done, total }| {
                 // Everything in one stage's first hearing, and about a hundred times more.
@@ -102,21 +98,11 @@ impl Job {
                 events.send(Event::Opened { job: number, result: result.map(Box::new) });
             }
         });
-        job
+        Self { stage: "starting", share: None, task }
     }
 
     pub fn is(&self, number: u64) -> bool {
-        self.number == number
-    }
-
-    pub fn cancel(&self) {
-        self.cancelled.store(true, Ordering::Relaxed);
-    }
-}
-
-impl Drop for Job {
-    fn drop(&mut self) {
-        self.cancel();
+        self.task.is(number)
     }
 }
 
@@ -135,7 +121,7 @@ fn open(
     if assumes_size && scene.mm_per_unit.is_none() {
         scene.mm_per_unit = Some(ASSUMED_DIAGONAL_MM / opened.model.diagonal()?);
     }
-    let subject = opened.subject(&scene, 1)?;
+    let subject = opened.subject(&scene)?;
     scene.camera = Some(camera(&scene, &subject, VIEW));
     scene.lights.get_or_insert_with(|| subject.lamps(VIEW));
     let atlas = Atlas::build(&opened.model.mesh, &options, watch)?;

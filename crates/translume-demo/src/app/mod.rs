@@ -13,6 +13,7 @@ mod orbit;
 mod order;
 mod panels;
 mod playback;
+mod task;
 #[cfg(test)]
 mod tests;
 mod truth;
@@ -32,7 +33,8 @@ use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::mpsc::Receiver;
-use truth::{Court, Judged, Task, Traced};
+use task::Task;
+use truth::{Court, Judged, Traced};
 use worker::{Adapter, Counters, Wish, Worker};
 
 /// What is shown first.
@@ -185,12 +187,13 @@ impl App {
 
     /// Opens a model or a scene, or takes a map of the sky for the light or a picture for the albedo.
     fn open(&mut self, name: &str) {
-        let ending = Path::new(name).extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase());
-        if matches!(ending.as_deref(), Some("exr" | "hdr")) {
-            return panels::light_from(self, Path::new(name));
+        let path = Path::new(name);
+        let ending = path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
+        if panels::MAPS.contains(&ending.as_str()) {
+            return panels::light_from(self, path);
         }
-        if matches!(ending.as_deref(), Some("png" | "jpg" | "jpeg")) {
-            return panels::albedo_from(self, Path::new(name));
+        if panels::TEXTURES.contains(&ending.as_str()) {
+            return panels::albedo_from(self, path);
         }
         match loaded::scene_of(name, self.quality()) {
             Ok(wanted) => {
@@ -261,7 +264,7 @@ impl App {
     fn frame_all(&mut self) {
         let Some(loaded) = &self.loaded else { return };
         let scene = Scene { camera: None, ..self.scene.clone() };
-        match loaded.opened.subject(&scene, 1) {
+        match loaded.opened.subject(&scene) {
             Ok(subject) => {
                 self.scene.camera = Some(crate::setup::camera(&scene, &subject, crate::setup::VIEW));
             }

@@ -3,7 +3,7 @@
 use super::loaded::Loaded;
 use super::playback::Play;
 use super::worker::{Order, Wish};
-use super::{App, orbit, panels};
+use super::{App, panels};
 use crate::scene::Scene;
 use eframe::egui;
 use std::sync::Arc;
@@ -18,11 +18,7 @@ const SLOW_MS: f32 = 60.0;
 impl App {
     /// The scene as it stands at this moment, seen through a view of so many pixels.
     pub(super) fn moment(&self, loaded: &Loaded, pixels: [u32; 2]) -> Scene {
-        let mut scene = self.scene.clone();
-        let model = &loaded.opened.model;
-        self.playback.apply(Play::of(&scene, model), &mut scene, model.mesh.targets.len());
-        scene.camera = scene.camera.map(|camera| orbit::shaped(camera, pixels));
-        scene
+        self.playback.moment(&self.scene, &loaded.opened.model, pixels)
     }
 
     pub(super) fn play(&self) -> Option<Play> {

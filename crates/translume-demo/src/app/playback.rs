@@ -67,7 +67,15 @@ impl Playback {
         }
     }
 
-    /// The scene at this moment.
+    /// The scene of a model at this moment, seen through a view of so many pixels.
+    pub fn moment(&self, scene: &Scene, model: &Model, pixels: [u32; 2]) -> Scene {
+        let mut scene = scene.clone();
+        self.apply(Play::of(&scene, model), &mut scene, model.mesh.targets.len());
+        scene.camera = scene.camera.map(|camera| orbit::shaped(camera, pixels));
+        scene
+    }
+
+    /// What is played at this moment, in its scene.
     pub fn apply(&self, play: Play, scene: &mut Scene, targets: usize) {
         match play {
             Play::Animation(duration) => scene.time = Some((self.phase * duration).min(duration)),

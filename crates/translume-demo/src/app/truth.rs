@@ -2,23 +2,24 @@
 
 use super::events::{Event, Events};
 use super::loaded::Loaded;
+use super::task::Task;
 use crate::albedo;
 use crate::error::Error;
 use crate::gpu::Gpu;
 use crate::motion::Motion;
 use crate::overlay;
 use crate::picture::{Develop, Picture};
-use crate::scene::{Quality, Scene, SceneLight};
+use crate::scene::{Scene, SceneLight};
 use crate::setup::{Substance, library_lights};
 use crate::trace::{Limits, Subject, samples, trace};
 use eframe::egui;
 use glam::Vec3;
 use std::f32::consts::PI;
 use std::path::Path;
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::atomic::Ordering;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Instant;
-use translume::{Body, Frame, Lighting, Translume, readback, wgpu};
+use translume::{Body, Evaluate, Frame, Lighting, Method, Translume, readback, wgpu};
 
 /// Pixels across a picture by paths.
 const WIDTH: u32 = 192;
@@ -54,78 +55,47 @@ pub struct Judged {
 /// Where scatters are judged, once the first was: drivers keep some of the memory of every device that there was.
 pub type Court = Arc<Mutex<Option<(Gpu, Translume)>>>;
 
-/// Work that ends when it is dropped.
-pub struct Task {
-    number: u64,
-    cancelled: Arc<AtomicBool>,
-}
-
-impl Task {
-    fn start(work: impl FnOnce(u64, &AtomicBool) + Send + 'static) -> Self {
-        static NUMBER: AtomicU64 = AtomicU64::new(1);
-        let task = Self {
-            number: NUMBER.fetch_add(1, Ordering::Relaxed),
-            cancelled: Arc::new(AtomicBool::new(false)),
+/// Follows paths through a scene until little noise is left.
+pub fn follow(scene: Scene, loaded: Arc<Loaded>, events: &Events) -> Task {
+    let events = events.clone();
+    Task::start(move |number, cancelled| {
+        let send = |result| events.send(Event::Traced(number, result));
+        let start = Instant::now();
+        let exposure = scene.look.exposure;
+        let (scene, widened) = match with_extent(scene) {
+            Ok(wider) => wider,
+            Err(error) => return send(Err(error)),
         };
-        let (number, cancelled) = (task.number, Arc::clone(&task.cancelled));
-        std::thread::spawn(move || work(number, &cancelled));
-        task
-    }
-
-    pub fn is(&self, number: u64) -> bool {
-        self.number == number
-    }
-
-    /// Follows paths through a scene until little noise is left.
-    pub fn trace(scene: Scene, loaded: Arc<Loaded>, events: &Events) -> Self {
-        let events = events.clone();
-        Self::start(move |number, cancelled| {
-            let send = |result| events.send(Event::Traced(number, result));
-            let start = Instant::now();
-            let exposure = scene.look.exposure;
-            let (scene, widened) = match with_extent(scene) {
-                Ok(wider) => wider,
-                Err(error) => return send(Err(error)),
-            };
-            let traced = |samples: Vec<[f32; 4]>, width: usize, noise, done| {
-                let picture = Picture::from_samples(&samples, width as u32, 1, Develop::Display { exposure });
-                let size = [picture.width as usize, picture.height as usize];
-                let image = egui::ColorImage::from_rgb(size, &picture.to_srgb());
-                Traced { image, noise, seconds: start.elapsed().as_secs_f64(), widened, done }
-            };
-            let limits =
-                Limits { noise: Some(NOISE), seconds: None, samples: None, seed: 1, stop: Some(cancelled) };
-            let result = Subject::new(&scene, &loaded.opened, Some(WIDTH)).and_then(|subject| {
-                trace(&subject, &limits, |status| {
-                    let estimate = status.estimate;
-                    send(Ok(traced(samples(estimate), estimate.width, status.noise, false)));
-                    !cancelled.load(Ordering::Relaxed)
-                })
-            });
-            if !cancelled.load(Ordering::Relaxed) {
-                send(
-                    result.map(|estimate| traced(samples(&estimate), estimate.width, estimate.noise(), true)),
-                );
-            }
-        })
-    }
-
-    /// Holds the scatter of a scene against all pairs, on a device of its own, as that may take minutes.
-    pub fn judge(scene: Scene, loaded: Arc<Loaded>, court: &Court, events: &Events) -> Self {
-        let (court, events) = (Arc::clone(court), events.clone());
-        Self::start(move |number, cancelled| {
-            let result = judge(&scene, &loaded, &court);
-            if !cancelled.load(Ordering::Relaxed) {
-                events.send(Event::Judged(number, result));
-            }
-        })
-    }
+        let traced = |samples: Vec<[f32; 4]>, width: usize, noise, done| {
+            let picture = Picture::from_samples(&samples, width as u32, 1, Develop::Display { exposure });
+            let size = [picture.width as usize, picture.height as usize];
+            let image = egui::ColorImage::from_rgb(size, &picture.to_srgb());
+            Traced { image, noise, seconds: start.elapsed().as_secs_f64(), widened, done }
+        };
+        let limits =
+            Limits { noise: Some(NOISE), seconds: None, samples: None, seed: 1, stop: Some(cancelled) };
+        let result = Subject::new(&scene, &loaded.opened, Some(WIDTH)).and_then(|subject| {
+            trace(&subject, &limits, |status| {
+                let estimate = status.estimate;
+                send(Ok(traced(samples(estimate), estimate.width, status.noise, false)));
+                !cancelled.load(Ordering::Relaxed)
+            })
+        });
+        if !cancelled.load(Ordering::Relaxed) {
+            send(result.map(|estimate| traced(samples(&estimate), estimate.width, estimate.noise(), true)));
+        }
+    })
 }
 
-impl Drop for Task {
-    fn drop(&mut self) {
-        self.cancelled.store(true, Ordering::Relaxed);
-    }
+/// Holds the scatter of a scene against all pairs, on a device of its own, as that may take minutes.
+pub fn judge(scene: Scene, loaded: Arc<Loaded>, court: &Court, events: &Events) -> Task {
+    let (court, events) = (Arc::clone(court), events.clone());
+    Task::start(move |number, cancelled| {
+        let result = errors(&scene, &loaded, &court);
+        if !cancelled.load(Ordering::Relaxed) {
+            events.send(Event::Judged(number, result));
+        }
+    })
 }
 
 /// The scene with lamps that paths can meet through a surface that refracts: points become spheres, directions cones of the sky, as bright as
@@ -152,7 +122,7 @@ fn with_extent(mut scene: Scene) -> Result<(Scene, bool), Error> {
     Ok((scene, any))
 }
 
-fn judge(scene: &Scene, loaded: &Loaded, court: &Court) -> Result<Judged, Error> {
+fn errors(scene: &Scene, loaded: &Loaded, court: &Court) -> Result<Judged, Error> {
     let start = Instant::now();
     let mut court = court.lock().unwrap_or_else(PoisonError::into_inner);
     if court.is_none() {
@@ -173,14 +143,7 @@ fn judge(scene: &Scene, loaded: &Loaded, court: &Court) -> Result<Judged, Error>
         ..Default::default()
     };
     let substance = Substance::new(scene, Path::new(""))?;
-    let plain = Quality {
-        method: "all-pairs".to_owned(),
-        evaluate: "texel".to_owned(),
-        tolerance: None,
-        theta: None,
-        ..scene.quality.clone()
-    };
-    let exact = Substance { method: plain.method()?, evaluate: plain.evaluate()?, ..substance.clone() };
+    let exact = Substance { method: Method::AllPairs, evaluate: Evaluate::PerTexel, ..substance.clone() };
     let exitance = |substance: &Substance| {
         let descriptor = substance.descriptor(&opened.model.mesh, &loaded.atlas, opened.flat_normals);
         let mut body = translume.create_body(&gpu.device, &descriptor)?;

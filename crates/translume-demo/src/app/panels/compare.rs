@@ -1,7 +1,7 @@
 //! How right the picture is: what lies behind it, and what lies beside it.
 
 use super::super::App;
-use super::super::truth::Task;
+use super::super::truth;
 use super::{choice, quality};
 use crate::overlay::{MOST_ERROR, Overlay, heat};
 use crate::scene::Quality;
@@ -153,7 +153,7 @@ impl App {
     fn judge(&mut self) {
         if let Some(wish) = &self.ordered {
             self.judging =
-                Some(Task::judge(wish.scene.clone(), wish.loaded.clone(), &self.court, &self.events));
+                Some(truth::judge(wish.scene.clone(), wish.loaded.clone(), &self.court, &self.events));
         }
     }
 
@@ -162,7 +162,7 @@ impl App {
         if let Some(wish) = &self.ordered {
             self.traced = None;
             self.traced_scene = Some(wish.scene.clone());
-            self.tracing = Some(Task::trace(wish.scene.clone(), wish.loaded.clone(), &self.events));
+            self.tracing = Some(truth::follow(wish.scene.clone(), wish.loaded.clone(), &self.events));
         }
     }
 }

@@ -11,8 +11,10 @@ use std::sync::Arc;
 use translume_mesh::builtin;
 
 const MODELS: &[&str] = &["obj", "gltf", "glb", "ply"];
-const MAPS: &[&str] = &["exr", "hdr"];
-const TEXTURES: &[&str] = &["png", "jpg", "jpeg"];
+/// Skies.
+pub const MAPS: &[&str] = &["exr", "hdr"];
+/// Albedo.
+pub const TEXTURES: &[&str] = &["png", "jpg", "jpeg"];
 
 pub fn menu(app: &mut App, ui: &mut egui::Ui) {
     egui::MenuBar::new().ui(ui, |ui| {

@@ -12,7 +12,7 @@ mod quality;
 mod status;
 
 pub use compare::Beside;
-pub use file::{chosen, dialogue};
+pub use file::{MAPS, TEXTURES, chosen, dialogue};
 pub use frames::Frames;
 pub use keys::keys;
 pub use light::light_from;
