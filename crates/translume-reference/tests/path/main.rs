@@ -2,6 +2,9 @@
 
 #![allow(clippy::expect_used, reason = "a test may stop where it cannot go on, in its helpers too")]
 
+mod chandrasekhar;
+mod progress;
+
 use std::f64::consts::PI;
 use std::sync::Arc;
 use translume_reference::composite::Camera;
@@ -53,94 +56,14 @@ fn half_space() -> Block {
     Block { low: [-400.0, -400.0, -400.0], high: [400.0, 0.0, 400.0] }
 }
 
-/// Chandrasekhar's H for isotropic scattering, by iteration of his equation in the form that converges.
-///
-/// Source: Chandrasekhar 1950, "Radiative Transfer", §§ 37–38: 1/H(μ) = √(1 − α) + α/2 ∫ μ' H(μ') / (μ + μ') dμ'.
-struct ChandrasekharH {
-    albedo: f64,
-    values: Vec<f64>,
-}
-
-impl ChandrasekharH {
-    const NODES: usize = 400;
-
-    fn new(albedo: f64) -> Self {
-        let mut h = Self { albedo, values: vec![1.0; Self::NODES] };
-        for _ in 0..200 {
-            h.values = (0..Self::NODES).map(|k| h.at(Self::node(k))).collect();
-        }
-        h
-    }
-
-    fn node(k: usize) -> f64 {
-        (k as f64 + 0.5) / Self::NODES as f64
-    }
-
-    fn at(&self, mu: f64) -> f64 {
-        let each = self.values.iter().enumerate().map(|(k, h)| Self::node(k) * h / (mu + Self::node(k)));
-        let integral = each.sum::<f64>() / Self::NODES as f64;
-        1.0 / ((1.0 - self.albedo).sqrt() + 0.5 * self.albedo * integral)
-    }
-
-    /// Radiance towards `mu` under irradiance π on a plane that faces light from `mu_0`.
-    fn radiance(&self, mu_0: f64, mu: f64) -> f64 {
-        0.25 * self.albedo * mu_0 / (mu_0 + mu) * self.at(mu_0) * self.at(mu)
-    }
-}
-
-/// A half-space in parallel light, for several albedos at once and several angles: α/4 · μ₀/(μ₀ + μ) · H(μ₀) H(μ) · E/π.
-#[test]
-fn half_space_shines_as_chandrasekhar_says() {
-    let albedos = [0.5, 0.9, 0.99];
-    let forms = albedos.map(ChandrasekharH::new);
-    let medium = volume(albedos.map(|a| 2.0 * a), albedos.map(|a| 2.0 * (1.0 - a)));
-    for (mu_0, mu) in [(1.0, 1.0), (0.4, 0.8), (0.8, 0.3)] {
-        let across = |mu: f64| (1.0 - mu * mu).sqrt();
-        let eye = [0.0, 100.0 * mu, 100.0 * across(mu)];
-        let light = sun([across(mu_0), mu_0, 0.0]);
-        // So narrow that mu is the same for all pixels.
-        let estimate = picture(&half_space(), medium, &[light], camera(eye, 1e-3, 16), 64);
-        for k in 0..3 {
-            let exact = forms[k].radiance(mu_0, mu);
-            let found = mean(&estimate, k);
-            // 16,384 paths: measured 0.4 to 0.7 %; four standard errors leave one chance in ten thousand.
-            assert!(found[1] < 0.01 * exact, "{found:?}");
-            assert!(agree(found, exact, 4.0), "{mu_0} {mu} {}: {found:?} {exact}", albedos[k]);
-            assert!(!agree(found, ChandrasekharH::new(0.93 * albedos[k]).radiance(mu_0, mu), 4.0));
-        }
-    }
-}
-
-/// What leaves a half-space in all: R(μ₀) = 1 − H(μ₀) √(1 − α), from radiances over the hemisphere.
-#[test]
-fn half_space_returns_its_albedo() {
-    for albedo in [0.6, 0.95] {
-        let form = ChandrasekharH::new(albedo);
-        for mu_0 in [1.0, 0.5] {
-            let light = sun([(1.0f64 - mu_0 * mu_0).sqrt(), mu_0, 0.0]);
-            let medium = volume([albedo; 3], [1.0 - albedo; 3]);
-            // By reciprocity light from all around seen along mu_0 is what light from mu_0 gives in all directions.
-            let eye = [100.0 * (1.0f64 - mu_0 * mu_0).sqrt(), 100.0 * mu_0, 0.0];
-            let estimate = picture(&half_space(), medium, &[sky()], camera(eye, 1e-3, 16), 256);
-            let exact = 1.0 - form.at(mu_0) * (1.0 - albedo).sqrt();
-            let found = mean(&estimate, 0);
-            // 65,536 paths, most of which bring all or nothing: measured 0.3 to 0.6 %.
-            assert!(found[1] < 0.008 * exact, "{found:?}");
-            assert!(agree(found, exact, 4.0), "{albedo} {mu_0}: {found:?} {exact}");
-            assert!(!agree(found, 1.06 * exact, 4.0), "6 % must be noticed");
-            // The same by looking from many sides: ∫ L 2μ dμ / E with the midpoints of rings.
-            let side = |k: u32| {
-                let mu = (f64::from(k) + 0.5) / 4.0;
-                let eye = [0.0, 100.0 * mu, 100.0 * (1.0 - mu * mu).sqrt()];
-                let ring =
-                    picture(&half_space(), medium, std::slice::from_ref(&light), camera(eye, 1e-3, 8), 32);
-                mean(&ring, 0)[0] / form.radiance(mu_0, mu)
-            };
-            let ratio = (0..4).map(side).sum::<f64>() / 4.0;
-            // 2,048 paths for each of four directions: standard error 0.9 %.
-            assert!((ratio - 1.0).abs() < 0.035, "{ratio}");
-        }
-    }
+fn lit_ball() -> (Ball, Volume, [Light; 1], Camera) {
+    let medium = volume([0.8, 1.5, 1.5], [0.05, 0.05, 0.5]);
+    (
+        Ball { center: [0.0; 3], radius: 3.0 },
+        medium,
+        [sun([0.6, 0.8, 0.0])],
+        camera([0.0, 20.0, 60.0], 0.12, 24),
+    )
 }
 
 /// A white sky around what absorbs nothing: radiance 1, but for light that was not scattered.
@@ -374,145 +297,6 @@ fn mesh_is_the_shape_it_stands_for() {
             );
         }
     }
-}
-
-fn lit_ball() -> (Ball, Volume, [Light; 1], Camera) {
-    let medium = volume([0.8, 1.5, 1.5], [0.05, 0.05, 0.5]);
-    (
-        Ball { center: [0.0; 3], radius: 3.0 },
-        medium,
-        [sun([0.6, 0.8, 0.0])],
-        camera([0.0, 20.0, 60.0], 0.12, 24),
-    )
-}
-
-/// Mean over pixels of (squared distance of two runs) over (sum of their squared errors): 1 where errors are honest.
-fn honesty(runs: &[Estimate], gain: f64) -> f64 {
-    let (mut ratio, mut count) = (0.0, 0.0);
-    for pair in runs.chunks_exact(2) {
-        for pixel in 0..pair[0].radiance.len() {
-            for k in 0..3 {
-                let distance = pair[0].radiance[pixel][k] - pair[1].radiance[pixel][k];
-                let claimed =
-                    gain * gain * (pair[0].error[pixel][k].powi(2) + pair[1].error[pixel][k].powi(2));
-                if claimed > 0.0 {
-                    (ratio, count) = (ratio + distance * distance / claimed, count + 1.0);
-                }
-            }
-        }
-    }
-    ratio / count
-}
-
-#[test]
-fn errors_are_as_large_as_they_say() {
-    let (ball, medium, lights, eye) = lit_ball();
-    let tracer = PathTracer::new(&ball, medium, &lights).expect("fine");
-    for is_focused in [false, true] {
-        let run = |seed| {
-            let mut trace = tracer.trace(eye, seed);
-            trace.pass(16, |_| true);
-            if is_focused {
-                trace.focus();
-            }
-            trace.pass(128, |_| true);
-            trace.estimate()
-        };
-        let runs: Vec<Estimate> = (0..6).map(run).collect();
-        let ratio = honesty(&runs, 1.0);
-        // 4,000 squares of a normal number have a mean of 1 ± 0.02; spread is a little larger where samples are few and skew.
-        assert!((ratio - 1.0).abs() < 0.12, "{ratio}");
-        assert!((honesty(&runs, 0.9) - 1.0).abs() > 0.12, "errors too small by a tenth must be noticed");
-    }
-}
-
-/// Paths go where they are needed: less noise of as many of them, and the same mean.
-#[test]
-fn focus_lessens_noise_and_changes_nothing() {
-    let (ball, medium, _, eye) = lit_ball();
-    // From behind, where a rim is bright and the rest dark.
-    let lights = [sun([0.1, 0.3, -0.95])];
-    let tracer = PathTracer::new(&ball, medium, &lights).expect("fine");
-    let run = |is_focused: bool| {
-        let mut trace = tracer.trace(eye, 3);
-        trace.pass(16, |_| true);
-        if is_focused {
-            trace.focus();
-        }
-        trace.pass(64, |_| true);
-        trace.estimate()
-    };
-    let (even, focused) = (run(false), run(true));
-    let paths =
-        |estimate: &Estimate| estimate.samples.as_flattened().iter().map(|&n| f64::from(n)).sum::<f64>();
-    // The even run keeps its first 16 paths and looks beside the body too.
-    assert!(paths(&focused) < 0.8 * paths(&even), "{} {}", paths(&focused), paths(&even));
-    assert!(focused.noise() < 0.95 * even.noise(), "{} {}", focused.noise(), even.noise());
-    for k in 0..3 {
-        let ([expected, error], [found, own]) = (mean(&even, k), mean(&focused, k));
-        assert!(agree([found, own.hypot(error)], expected, 3.5), "{found} {expected} ± {error}");
-        assert!(!agree([1.1 * found, own.hypot(error)], expected, 3.5), "a tenth must be noticed");
-    }
-}
-
-/// Where one channel has no noise at all it still gets paths, and no pixel is left black.
-#[test]
-fn focus_leaves_nothing_black() {
-    let ball = Ball { center: [0.0; 3], radius: 10.0 };
-    let tracer = PathTracer::new(&ball, volume([0.1, 1.0, 6.0], [0.0; 3]), &[sky()]).expect("fine");
-    let mut trace = tracer.trace(camera([0.0, 0.0, 60.0], 0.4, 24), 1);
-    trace.pass(8, |_| true);
-    trace.focus();
-    trace.pass(2, |_| true);
-    let estimate = trace.estimate();
-    let inside: Vec<usize> = (0..24 * 24).filter(|&pixel| estimate.coverage[pixel] == 1.0).collect();
-    assert!(inside.len() > 200);
-    // The thinnest chords of the red channel let most light through; blue is opaque but for the last hundredth of a millimetre.
-    assert!(inside.iter().all(|&pixel| estimate.radiance[pixel].iter().all(|c| *c > 0.0)));
-    let white = inside.iter().filter(|&&pixel| estimate.radiance[pixel][2] > 0.999).count();
-    assert!(white > inside.len() * 9 / 10 && white <= inside.len(), "{white} of {}", inside.len());
-    assert!(estimate.samples.contains(&[0; 3]), "beside the body no paths are needed");
-}
-
-#[test]
-fn runs_repeat_bit_for_bit_on_any_number_of_threads() {
-    let (ball, medium, lights, eye) = lit_ball();
-    let tracer = PathTracer::new(&ball, medium, &lights).expect("fine");
-    let run = |threads, seed| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
-        pool.install(|| {
-            let mut trace = tracer.trace(eye, seed);
-            trace.pass(4, |_| true);
-            trace.focus();
-            trace.pass(4, |_| true);
-            trace.estimate()
-        })
-    };
-    assert_eq!(run(1, 5), run(3, 5));
-    assert_ne!(run(1, 5), run(1, 6));
-}
-
-#[test]
-fn interrupted_pictures_are_valid() {
-    let (ball, medium, lights, _) = lit_ball();
-    let tracer = PathTracer::new(&ball, medium, &lights).expect("fine");
-    let mut trace = tracer.trace(camera([0.0, 20.0, 60.0], 0.12, 64), 1);
-    assert!(trace.pass(2, |_| true));
-    let whole = trace.estimate();
-    let mut heard = Vec::new();
-    assert!(!trace.pass(2, |progress| {
-        heard.push(progress.done);
-        false
-    }));
-    assert_eq!(heard.len(), 1, "no more after the first no");
-    let estimate = trace.estimate();
-    assert!(
-        heard[0] < 64 * 64
-            && estimate.samples[heard[0] - 1] == [4; 3]
-            && estimate.samples[heard[0]] == [2; 3]
-    );
-    assert_eq!(estimate.radiance[heard[0]..], whole.radiance[heard[0]..]);
-    assert_ne!(estimate.radiance[..heard[0]], whole.radiance[..heard[0]]);
 }
 
 #[test]
