@@ -33,7 +33,7 @@ use summary::Summary;
 use translume::Translume;
 use truth::{Patience, Truths};
 
-/// For pictures whose time is of no interest.
+/// For pictures whose time is of no interest, or so long that nothing is left to warm up.
 const ONCE: Repeats = Repeats { warm_up: 0, timed: 1 };
 
 struct Study<'a> {
@@ -86,7 +86,7 @@ impl Study<'_> {
             Patience { samples: 60, noise: 0.1, most: Duration::from_secs(3) }
         } else {
             // A pixel's integrals take some ten milliseconds, and so many tell an error to about 5 %.
-            Patience { samples: 250, noise: 0.03, most: Duration::from_secs(10) }
+            Patience { samples: 250, noise: 0.03, most: Duration::from_secs(8) }
         };
         let mut wanted: Vec<&'static str> = Vec::new();
         for Entrant { profile, .. } in entrant::all(self.quick) {
@@ -105,7 +105,7 @@ impl Study<'_> {
         let first = rows.len();
         for (entrant, is_model) in self.entrants(&truths) {
             told(&format!("{}, {}", entrant.family.name(), entrant.setting));
-            let repeats = if is_model { ONCE } else { repeats };
+            let repeats = if is_model || entrant.is_slow() { ONCE } else { repeats };
             let Some(taken) = shot.take(&entrant, repeats)? else { continue };
             let radiance: Vec<[f32; 3]> = taken.picture.iter().map(|[r, g, b, _]| [*r, *g, *b]).collect();
             let verdict = judge::judge(&truths, entrant.profile, &radiance);

@@ -140,7 +140,7 @@ fn models(sections: &[Section], rows: &[Row]) -> String {
     if profiles.is_empty() {
         return String::new();
     }
-    let mut text = "<h2>Profiles</h2>\n<p>Total error (bias) in % by profile, at 512² and a tolerance of 0.3 %: nearly all of it is the model's.</p>\n\
+    let mut text = "<h2>Profiles</h2>\n<p>Total error (bias) in % by profile, at 512² and a tolerance of 1 %: nearly all of it is the model's.</p>\n\
         <div class=\"scroll\"><table>\n<tr><th>scene</th>"
         .to_owned();
     profiles.iter().for_each(|profile| {
