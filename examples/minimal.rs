@@ -4,7 +4,9 @@
 //! texel, brighter where the lamp shines through. A real host samples the texture in its material instead.
 
 use std::error::Error;
-use translume::{BodyDescriptor, Frame, Light, Lighting, Medium, PointLight, Translume, readback, wgpu};
+use translume::{
+    BodyDescriptor, Config, Frame, Light, Lighting, Medium, PointLight, Translume, readback, wgpu,
+};
 use translume_mesh::{Atlas, AtlasOptions, builtin};
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -16,7 +18,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     // Once: unwrap the mesh on the CPU, compile the pipelines, upload the body.
     let mesh = builtin::creature_with(5_000);
     let atlas = Atlas::build(&mesh, &AtlasOptions { size: 128, ..Default::default() }, |_| true)?;
-    let translume = Translume::new(&device)?;
+    let translume = Translume::new(&device, &Config::default())?;
     let descriptor =
         BodyDescriptor { medium: Medium::JADE, mm_per_unit: 1.0, ..BodyDescriptor::new(&mesh, &atlas) };
     let mut body = translume.create_body(&device, &descriptor)?;

@@ -2,7 +2,7 @@
 
 use crate::scene::Scene;
 use crate::{Change, MODES, Model};
-use translume::{Translume, wgpu};
+use translume::{Config, Translume, wgpu};
 use translume_mesh::builtin;
 
 /// A device with timestamps where the adapter has them, and every pipeline.
@@ -41,7 +41,7 @@ impl Gpu {
         };
         let (device, queue) = pollster::block_on(adapter.request_device(&descriptor))
             .unwrap_or_else(|error| panic!("{}: {error}", adapter.get_info().name));
-        let translume = Translume::new(&device).unwrap_or_else(|error| panic!("{error}"));
+        let translume = Translume::new(&device, &Config::default()).unwrap_or_else(|error| panic!("{error}"));
         let has_timestamps = device.features().contains(wgpu::Features::TIMESTAMP_QUERY);
         let mut gpu = Self { device, queue, translume, adapter: adapter.get_info().name, has_timestamps };
         gpu.has_timestamps &= gpu.timestamps_arrive();

@@ -55,6 +55,9 @@ macro_rules! composite {
 /// Rest pose, morph targets, joints and warp → positions, and normals of a rigid body.
 pub const DEFORM: Shader =
     shader!("deform", "shared/dispatch.wgsl", "shared/warp.wgsl", "shared/deform.wgsl", "deform.wgsl");
+/// Vertices that the host deformed → positions and normals.
+pub const ADOPT: Shader =
+    shader!("adopt", "shared/dispatch.wgsl", "shared/warp.wgsl", "shared/deform.wgsl", "adopt.wgsl");
 /// Deformed positions → normals.
 pub const NORMALS: Shader =
     shader!("normals", "shared/dispatch.wgsl", "shared/warp.wgsl", "shared/deform.wgsl", "normals.wgsl");
@@ -133,8 +136,9 @@ pub const COMPOSITE_FRAGMENTS: Shader = composite!(
 );
 
 /// Every module, in the order light flows through them.
-pub const ALL: [Shader; 17] = [
+pub const ALL: [Shader; 18] = [
     DEFORM,
+    ADOPT,
     NORMALS,
     CORNERS,
     VISIBILITY,

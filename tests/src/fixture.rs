@@ -26,7 +26,7 @@ impl Fixture {
     /// # Panics
     /// If the body cannot be created.
     #[must_use]
-    pub fn new(model: &Arc<Model>, change: impl FnOnce(&mut BodyDescriptor<'_>)) -> Self {
+    pub fn new<'a>(model: &'a Arc<Model>, change: impl FnOnce(&mut BodyDescriptor<'a>)) -> Self {
         Self::try_new(model, change).unwrap_or_else(|error| panic!("[{}] {error}", gpu().adapter_name))
     }
 
@@ -34,7 +34,10 @@ impl Fixture {
     ///
     /// # Errors
     /// What `create_body` says.
-    pub fn try_new(model: &Arc<Model>, change: impl FnOnce(&mut BodyDescriptor<'_>)) -> Result<Self, Error> {
+    pub fn try_new<'a>(
+        model: &'a Arc<Model>,
+        change: impl FnOnce(&mut BodyDescriptor<'a>),
+    ) -> Result<Self, Error> {
         let mut descriptor = BodyDescriptor {
             mm_per_unit: 1.0,
             profile: Profile::DipoleNormalised,

@@ -1,7 +1,7 @@
 //! The adapter under test.
 
 use std::sync::OnceLock;
-use translume::{Translume, wgpu};
+use translume::{Config, Translume, wgpu};
 
 /// A device, its queue, the pipelines, and the name of the adapter behind them.
 pub struct Gpu {
@@ -48,8 +48,8 @@ impl Gpu {
             pollster::block_on(adapter.request_device(&descriptor)).unwrap_or_else(|error| {
                 panic!("[{adapter_name}] no device with WebGPU's default limits: {error}")
             });
-        let translume =
-            Translume::new(&device).unwrap_or_else(|error| panic!("[{adapter_name}] no pipelines: {error}"));
+        let translume = Translume::new(&device, &Config::default())
+            .unwrap_or_else(|error| panic!("[{adapter_name}] no pipelines: {error}"));
         eprintln!("adapter: {adapter_name}");
         Self { instance, device, queue, translume, adapter_name }
     }

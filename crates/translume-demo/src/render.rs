@@ -17,7 +17,7 @@ use crate::studio::Studio;
 use crate::timings::table;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
-use translume::{Frame, Lighting, Medium, Translume, View};
+use translume::{Config, Frame, Lighting, Medium, Translume, View};
 
 /// Without units a model is taken to be as large as something held in a hand.
 pub const ASSUMED_DIAGONAL_MM: f32 = 100.0;
@@ -56,7 +56,7 @@ pub fn run(arguments: &Render) -> Result<(), Error> {
 
     let descriptor = substance.descriptor(mesh, &atlas, opened.flat_normals);
     let samples = arguments.samples.unwrap_or(output.format.samples());
-    let translume = Translume::new(&gpu.device)?;
+    let translume = Translume::new(&gpu.device, &Config::default())?;
     let composite = Canvas::composite(&gpu.device, &translume);
     let mut studio =
         Studio::new(&gpu, (&translume, &composite), &descriptor, [camera.width, camera.height], samples)?;

@@ -4,6 +4,20 @@ use crate::{AmbientLight, ShadowOptions};
 use glam::{Mat3, Vec3, Vec4};
 
 /// A rectangle that shines from one side, as a window or a softbox does.
+///
+/// ```
+/// use translume::{Light, RectangleLight};
+///
+/// // A window of 2 by 3 units in the plane x = −4, shining towards +x.
+/// let window = RectangleLight {
+///     center: [-4.0, 1.5, 0.0],
+///     half_right: [0.0, 0.0, -1.0],
+///     half_up: [0.0, 1.5, 0.0],
+///     radiance: [8.0, 9.0, 10.0],
+///     ..Default::default()
+/// };
+/// let light = Light::Rectangle(window);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RectangleLight {
     /// Its middle, world units.
@@ -20,6 +34,12 @@ pub struct RectangleLight {
 }
 
 /// A ball that shines in every direction, as a bulb does. Surfaces inside it get nothing.
+///
+/// ```
+/// use translume::{Light, SphereLight};
+///
+/// let bulb = Light::Sphere(SphereLight { center: [0.0, 2.0, 0.0], radius: 0.05, radiance: [400.0; 3], ..Default::default() });
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SphereLight {
     /// Its middle, world units.

@@ -3,6 +3,7 @@
 mod encode;
 mod evaluation;
 mod kernel;
+mod memory;
 mod settings;
 
 use self::kernel::{check_kernel, check_method};
@@ -13,10 +14,12 @@ use crate::descriptor::BodyDescriptor;
 use crate::evaluate::{Evaluate, Shape};
 use crate::frame::{self, Casters, Frame, Lighting};
 use crate::gpu::MediumKind;
+use crate::host_vertices::HostNumbers;
 use crate::kernel_table::KernelTableLayout;
 use crate::kernel_texture::KernelTexture;
 use crate::layout::{MAX_VIEWS, NeedLayout};
 use crate::lighting::{self, GatherBody};
+use crate::memory::{Account, Ledger};
 use crate::pose::Pose;
 use crate::shadow_view::{Subject, View};
 use crate::stages::cluster::Tree;
@@ -25,7 +28,7 @@ use crate::stages::gather::Kinds;
 use crate::stages::scatter::Method;
 use crate::stages::scatter::dual::DualMemory;
 use crate::stages::scatter::pattern::{PatternMemory, Plan};
-use crate::stages::shadow::DepthMaps;
+use crate::stages::shadow::{DepthLayers, DepthMaps};
 use crate::stages::visibility::SkyMemory;
 use crate::stages::{Stage, StageSet, Stages};
 use crate::standing::Standing;
@@ -37,6 +40,26 @@ use std::sync::Arc;
 /// A mesh that light goes through: its buffers, and which stages its next frame needs.
 ///
 /// Each frame: [`prepare`](Self::prepare) takes the inputs, [`encode`](Self::encode) records the stages whose inputs changed.
+///
+/// ```no_run
+/// # fn example(device: &translume::wgpu::Device, queue: &translume::wgpu::Queue, body: &mut translume::Body) -> Result<(), translume::Error> {
+/// use translume::{Deformation, Frame, Light, Lighting, Medium, PointLight};
+///
+/// body.set_medium(Medium::JADE)?;
+/// let lamp = Light::Point(PointLight { position: [0.0, 0.2, -0.3], intensity: [0.3; 3], ..Default::default() });
+/// for frame in 0..100 {
+///     let weight = frame as f32 / 100.0;
+///     body.prepare(device, queue, &Frame {
+///         deformation: Deformation::Morph(&[weight]),
+///         lighting: Lighting::Lights(&[lamp]),
+///         ..Default::default()
+///     })?;
+///     let mut encoder = device.create_command_encoder(&Default::default());
+///     body.encode(&mut encoder);
+///     queue.submit([encoder.finish()]);
+/// }
+/// # Ok(()) }
+/// ```
 pub struct Body {
     stages: Arc<Stages>,
     pub(crate) buffers: Buffers,
@@ -78,6 +101,7 @@ pub struct Body {
     pose: Pose,
     /// Where the next frame's pose is made, so that a refused one leaves no trace and none allocates.
     next_pose: Pose,
+    host: HostNumbers,
     lights: Vec<Light>,
     kinds: Kinds,
     casters: Option<Casters>,
@@ -87,6 +111,8 @@ pub struct Body {
     views: Vec<View>,
     owners: Vec<usize>,
     sky: SkyMemory,
+    shares_scratch: bool,
+    account: Account,
     pending: StageSet,
     /// Whether the kernel table no longer fits medium and profile.
     scatter_stale: bool,
@@ -114,6 +140,7 @@ impl Body {
     pub(crate) fn new(
         device: &wgpu::Device,
         stages: Arc<Stages>,
+        ledger: &Arc<Ledger>,
         descriptor: &BodyDescriptor<'_>,
     ) -> Result<Self, Error> {
         let BodyDescriptor { mesh, atlas, medium, ref profile, method, mm_per_unit, .. } = *descriptor;
@@ -130,8 +157,13 @@ impl Body {
         let exitance_view = exitance.create_view(&wgpu::TextureViewDescriptor::default());
         let kernel = KernelTexture::new(device, mesh, atlas);
         let shadows = descriptor.shadows;
-        let depth_maps = stages.shadow.depth_maps(device, shadows.resolution, 1, MAX_VIEWS as u64);
-        Ok(Self {
+        let layers = if descriptor.shares_scratch {
+            Arc::clone(&stages.scratch.blank)
+        } else {
+            Arc::new(DepthLayers::new(device, shadows.resolution, 1))
+        };
+        let depth_maps = stages.shadow.depth_maps(device, layers, MAX_VIEWS as u64);
+        let mut body = Self {
             deform_groups: stages.deform.bind(device, &buffers),
             gather_group: stages.gather.bind(device, &buffers, &depth_maps, None),
             cluster_group: stages.cluster.bind(device, &buffers),
@@ -168,6 +200,7 @@ impl Body {
             boundary: Boundary::new(profile, &medium),
             pose: Pose::rest(&extent),
             next_pose: Pose::rest(&extent),
+            host: HostNumbers::new(descriptor.host_vertices, extent.vertices),
             lights: Vec::new(),
             kinds: Kinds::default(),
             casters: None,
@@ -175,6 +208,8 @@ impl Body {
             views: Vec::new(),
             owners: Vec::new(),
             sky: SkyMemory::new(&shadows),
+            shares_scratch: descriptor.shares_scratch,
+            account: Account::new(ledger),
             pending: StageSet::default(),
             scatter_stale: true,
             method_stale: true,
@@ -186,7 +221,9 @@ impl Body {
             exitance,
             exitance_view,
             depth_maps,
-        })
+        };
+        body.settle()?;
+        Ok(body)
     }
 
     /// Takes over the inputs of the next frame and uploads what changed. Finds out which stages the frame needs.
@@ -202,6 +239,9 @@ impl Body {
         let model = Mat4::from_cols_array_2d(&frame.model);
         frame::validate_model(model)?;
         self.next_pose.set(frame.deformation, frame.warp)?;
+        if let Some(adopted) = &self.next_pose.adopted {
+            self.host.check(adopted, &self.limits)?;
+        }
         let (lights, host_irradiance): (&[Light], _) = match frame.lighting {
             Lighting::Lights(lights) => (lights, None),
             Lighting::Irradiance(buffer) => (&[], Some(buffer)),
@@ -227,7 +267,7 @@ impl Body {
             self.bounds.posed(&self.next_pose).corners().map(|corner| to_mm.transform_point3(corner));
         frame::validate_corners(&corners)?;
         let subject = Subject { corners: &corners, casters: casters.as_ref() };
-        if relit || self.surface_stale {
+        let gathering = if relit || self.surface_stale {
             let body = GatherBody {
                 texels: self.extent.texels,
                 flat_normals: self.flat_normals,
@@ -238,7 +278,13 @@ impl Body {
                 shadows: &self.shadows,
                 directions: &self.sky.directions,
             };
-            let gathering = lighting::gather(lights, &body)?;
+            Some(lighting::gather(lights, &body)?)
+        } else {
+            None
+        };
+        let layers = gathering.as_ref().map_or(0, |gathering| gathering.layers);
+        self.check_growth(layers, has_sky, self.choose(frame.view.as_ref(), &corners))?;
+        if let Some(gathering) = gathering {
             self.make_room_for_views(device, gathering.layers);
             self.depth_maps.write_views(queue, &gathering.views);
             queue.write_buffer(&self.buffers.gather_uniform, 0, bytemuck::bytes_of(&*gathering.layout));
@@ -248,7 +294,7 @@ impl Body {
         }
         if moved {
             std::mem::swap(&mut self.pose, &mut self.next_pose);
-            self.upload_pose(queue, to_mm);
+            self.upload_pose(device, queue, to_mm);
             self.pending.insert(StageSet::from_stage_on(Stage::Deform));
         }
         if shaded {
@@ -274,6 +320,7 @@ impl Body {
         self.refresh_table(queue, frame::diagonal(&corners));
         self.place_evaluation(queue, frame, &corners);
         self.refresh_method(device, queue);
+        self.settle_turns();
         if self.is_timed {
             self.timer.get_or_insert_with(|| Timer::new(device, queue)).next_frame();
         }
@@ -286,18 +333,14 @@ impl Body {
         self.pending
     }
 
-    fn upload_pose(&self, queue: &wgpu::Queue, to_mm: Mat4) {
+    fn upload_pose(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, to_mm: Mat4) {
         let uniform = self.pose.layout(&self.extent, self.bounds.axis(), to_mm);
         queue.write_buffer(&self.buffers.deform_uniform, 0, bytemuck::bytes_of(&uniform));
         queue.write_buffer(&self.buffers.weights, 0, bytemuck::cast_slice(&self.pose.weights));
         queue.write_buffer(&self.buffers.joints, 0, bytemuck::cast_slice(&self.pose.joints));
-    }
-
-    fn make_room_for_views(&mut self, device: &wgpu::Device, layers: u32) {
-        if !self.depth_maps.fit(self.shadows.resolution, layers) {
-            let (width, layers) = (self.shadows.resolution, layers.max(1));
-            self.depth_maps = self.stages.shadow.depth_maps(device, width, layers, MAX_VIEWS as u64);
-            self.bind_gather(device);
+        if let Some(adopted) = &self.pose.adopted {
+            let stage = (&self.stages.deform, &self.buffers);
+            self.host.prepare((device, queue), stage, adopted, &self.limits);
         }
     }
 
@@ -324,9 +367,14 @@ impl Body {
 
     /// Says whether the next frame looks at the sky.
     fn prepare_sky(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, subject: &Subject<'_>) -> bool {
-        let stages = (&self.stages.visibility, &self.stages.shadow);
-        let texels = self.extent.texels;
-        if self.sky.allocate(device, stages, &self.buffers, &self.shadows, texels) {
+        let stages = Arc::clone(&self.stages);
+        let depth = || self.sky_depth(device);
+        if let (true, Some(_)) = (self.shares_scratch, self.sky.depth()) {
+            let depth = depth();
+            self.sky.take_turns(device, &stages.visibility, &self.buffers, depth);
+        } else if self.sky.depth().is_none() {
+            let (depth, options) = (depth(), (&self.shadows, self.extent.texels));
+            self.sky.allocate(device, (&stages.visibility, &stages.shadow), &self.buffers, options, depth);
             self.bind_gather(device);
         }
         self.sky.prepare(queue, subject, &self.shadows)

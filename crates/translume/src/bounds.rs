@@ -111,6 +111,9 @@ impl PoseBounds {
     /// A box around the posed mesh, model units. A skinned vertex is a mean of where its joints take it, so the union over the joints
     /// holds it.
     pub fn posed(&self, pose: &Pose) -> Bounds {
+        if let Some(adopted) = &pose.adopted {
+            return adopted.bounds;
+        }
         let inflate = pose.warp.inflate.abs();
         let skinned = self.parts.iter().fold(Bounds::EMPTY, |all, part| {
             let morphed = part.morphed(&pose.weights).grown(inflate);

@@ -233,24 +233,79 @@ impl Buffers {
         }
     }
 
+    /// Bytes of the mesh, and of everything per texel.
+    pub fn bytes(&self) -> [u64; 2] {
+        let Self { deform_uniform, rest, deltas, weights, influences, joints, triangles, adjacency, .. } =
+            self;
+        let Self { positions, normals, atlas_vertices, corners, atlas_indices, vertex_texels, .. } = self;
+        let Self {
+            gather_uniform, texels, texel_positions, texel_normals, irradiance, cluster_uniforms, ..
+        } = self;
+        let Self {
+            need, marks, clusters, receivers, bounds, lamps, scatter_uniforms, exitance, pixels, ..
+        } = self;
+        let mesh = [
+            deform_uniform,
+            rest,
+            deltas,
+            weights,
+            influences,
+            joints,
+            triangles,
+            adjacency,
+            positions,
+            normals,
+            atlas_vertices,
+            corners,
+            atlas_indices,
+            vertex_texels,
+        ];
+        let atlas = [
+            gather_uniform,
+            texels,
+            texel_positions,
+            texel_normals,
+            irradiance,
+            cluster_uniforms,
+            need,
+            marks,
+            clusters,
+            receivers,
+            bounds,
+            lamps,
+            scatter_uniforms,
+            exitance,
+            pixels,
+        ];
+        [mesh.iter().map(|buffer| buffer.size()).sum(), atlas.iter().map(|buffer| buffer.size()).sum()]
+    }
+
     pub fn outputs<'a>(&'a self, depth_maps: &'a DepthMaps, dual: Option<&'a DualMemory>) -> Outputs<'a> {
         Outputs {
             positions: &self.positions,
             normals: &self.normals,
-            depth_maps: &depth_maps.texture,
+            depth_maps: &depth_maps.layers.texture,
             texel_positions: &self.texel_positions,
             texel_normals: &self.texel_normals,
             irradiance: &self.irradiance,
             clusters: &self.clusters,
             exitance: &self.exitance,
             vertex_exitance: dual.and_then(DualMemory::vertex_exitance),
-            lists: dual.map(|memory| &memory.lists),
+            lists: dual.map(|memory| &memory.lists.lists),
         }
     }
 }
 
 /// What the stages wrote, as buffers in the order of the atlas' texels or the mesh's vertices. Every entry is four floats but the
 /// clusters' ([`Cluster`](crate::Cluster)).
+///
+/// ```no_run
+/// # fn example(device: &translume::wgpu::Device, queue: &translume::wgpu::Queue, body: &mut translume::Body) -> Result<(), translume::Error> {
+/// // For a test or a tool; a frame never waits like that.
+/// let exitance: Vec<[f32; 4]> = translume::readback::buffer(device, queue, body.outputs().exitance)?;
+/// assert_eq!(exitance.len(), body.texels() as usize);
+/// # Ok(()) }
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Outputs<'a> {
     /// Deformed positions of the mesh's vertices, mm, w = 1.

@@ -4,6 +4,25 @@ use glam::camera::rh::{proj, view};
 use glam::{Mat4, Vec3};
 
 /// A camera, in the host's world units. Clip space is wgpu's: x right, y up, depth 0..1.
+///
+/// ```
+/// use translume::{Camera, LookAt};
+///
+/// // From matrices of your own …
+/// let identity = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]];
+/// let mine = Camera { view_projection: identity, eye: [0.0, 0.0, 1.0] };
+/// // … or in words.
+/// let words = Camera::from(LookAt {
+///     eye: [0.0, 1.6, 3.0],
+///     target: [0.0, 1.0, 0.0],
+///     up: [0.0, 1.0, 0.0],
+///     horizontal_fov: 0.8,
+///     aspect: 16.0 / 9.0,
+///     near: 0.1,
+///     far: 100.0,
+/// });
+/// assert_eq!(words.eye, [0.0, 1.6, 3.0]);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
     /// World space to clip space, column-major.
@@ -22,6 +41,21 @@ impl Camera {
 }
 
 /// A camera in words.
+///
+/// ```
+/// use translume::{Camera, LookAt};
+///
+/// let look = LookAt {
+///     eye: [0.0, 0.0, 2.0],
+///     target: [0.0; 3],
+///     up: [0.0, 1.0, 0.0],
+///     horizontal_fov: 1.0,
+///     aspect: 1.0,
+///     near: 0.1,
+///     far: 10.0,
+/// };
+/// let camera: Camera = look.into();
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LookAt {
     /// The eye's position.

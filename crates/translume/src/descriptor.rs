@@ -2,9 +2,25 @@
 
 use crate::bounds::WEIGHT_SLACK;
 use crate::{Error, Evaluate, Medium, Method, Profile, ShadowOptions};
+use translume_mesh::repair::RepairReport;
 use translume_mesh::{Atlas, Influence, Mesh, Skin};
 
 /// What a body is made of and how it is computed.
+///
+/// ```no_run
+/// # fn example(device: &translume::wgpu::Device, translume: &translume::Translume, mesh: &translume_mesh::Mesh,
+/// #     atlas: &translume_mesh::Atlas) -> Result<(), translume::Error> {
+/// use translume::{BodyDescriptor, Medium, Method, ShadowOptions};
+///
+/// let body = translume.create_body(device, &BodyDescriptor {
+///     medium: Medium::WAX,
+///     mm_per_unit: 10.0, // an engine that counts in centimetres
+///     method: Method::Within { tolerance: 0.03 },
+///     shadows: ShadowOptions { resolution: 512, ..Default::default() },
+///     ..BodyDescriptor::new(mesh, atlas)
+/// })?;
+/// # Ok(()) }
+/// ```
 #[derive(Clone, Debug)]
 pub struct BodyDescriptor<'a> {
     /// The mesh, clean (see [`translume_mesh::repair`]).
@@ -30,6 +46,13 @@ pub struct BodyDescriptor<'a> {
     pub flat_normals: bool,
     /// How finely shadows are computed.
     pub shadows: ShadowOptions,
+    /// Whether the body takes turns with others of its device that do, for what none needs beyond its own part of a frame: depth maps, and
+    /// lists of the scatter. Then a light that changes costs the same as before, but a change of the medium's index of refraction looks from the
+    /// lights again, and [`Gloss`](crate::Gloss) reflects lights without their shadows. For scenes of many bodies; off by default.
+    pub shares_scratch: bool,
+    /// For frames of [`Deformation::Vertices`](crate::Deformation::Vertices): where each vertex of the mesh is among the host's, as in
+    /// [`RepairReport::origins`](translume_mesh::repair::RepairReport::origins). `None` where they are numbered alike.
+    pub host_vertices: Option<&'a [u32]>,
 }
 
 impl<'a> BodyDescriptor<'a> {
@@ -47,6 +70,8 @@ impl<'a> BodyDescriptor<'a> {
             mm_per_unit: 1000.0,
             flat_normals: false,
             shadows: ShadowOptions::default(),
+            shares_scratch: false,
+            host_vertices: None,
         }
     }
 
@@ -65,6 +90,17 @@ impl<'a> BodyDescriptor<'a> {
         if !(0..=1024).contains(&self.list_entries) {
             let problem = format!("{} words a texel for the lists of the scatter", self.list_entries);
             return fail(problem, "give at most 1024");
+        }
+        if let Some(numbers) = self.host_vertices {
+            let vertices = self.mesh.positions.len();
+            if numbers.len() != vertices {
+                let problem = format!("{} numbers of the host for {vertices} vertices", numbers.len());
+                return fail(problem, "give one for each vertex of the mesh");
+            }
+            if let Some(vertex) = numbers.iter().position(|number| *number == RepairReport::NEW) {
+                let problem = format!("vertex {vertex} is none of the host's");
+                return fail(problem, "leave the holes open, or let the library deform the mesh");
+            }
         }
         self.shadows.validate(limit)
     }

@@ -10,6 +10,15 @@ use translume_mesh::{Atlas, Mesh};
 ///
 /// A texel stands in the sum as a disc. From the middle of a texel the discs around it close without gaps; from elsewhere they do only where
 /// light wanders further than a texel is wide. Points therefore need a mean free path of a texel or more: below that single texels show.
+///
+/// ```no_run
+/// # fn example(device: &translume::wgpu::Device, queue: &translume::wgpu::Queue, body: &mut translume::Body) -> Result<(), translume::Error> {
+/// use translume::Evaluate;
+///
+/// // The library draws this body, so it may choose.
+/// body.set_evaluate(Evaluate::Auto)?;
+/// # Ok(()) }
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Evaluate {
@@ -41,6 +50,17 @@ impl Evaluate {
 }
 
 /// The only picture of a body in a frame.
+///
+/// ```
+/// # fn example(camera: translume::Camera, body: &translume::Body) {
+/// use translume::{Frame, View};
+///
+/// let view = View { camera, pixels: [1920, 1080] };
+/// if body.covered(&view) > 0.0 {
+///     let frame = Frame { view: Some(view), ..Default::default() };
+/// }
+/// # }
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct View {
     /// From where it is taken.
@@ -64,19 +84,25 @@ impl View {
     }
 
     /// Pixels of the picture that the box with these corners covers, at most. World units.
-    fn covered(&self, corners: impl Iterator<Item = Vec3>) -> f32 {
+    pub(crate) fn covered(&self, corners: impl Iterator<Item = Vec3>) -> f32 {
         let matrix = Mat4::from_cols_array_2d(&self.camera.view_projection);
         let mut low = glam::Vec2::splat(f32::INFINITY);
-        let mut high = -low;
+        let (mut high, mut reaches_behind) = (-low, false);
         for corner in corners {
             let clip = matrix * corner.extend(1.0);
             if clip.w <= 0.0 {
-                // It reaches behind the eye.
-                (low, high) = (glam::Vec2::NEG_ONE, glam::Vec2::ONE);
-                break;
+                reaches_behind = true;
+                continue;
             }
             let at = clip.truncate().truncate() / clip.w;
             (low, high) = (low.min(at), high.max(at));
+        }
+        if low.x > high.x {
+            // All of it is behind the eye.
+            return 0.0;
+        }
+        if reaches_behind {
+            (low, high) = (glam::Vec2::NEG_ONE, glam::Vec2::ONE);
         }
         let bounds = (glam::Vec2::NEG_ONE, glam::Vec2::ONE);
         let size = high.clamp(bounds.0, bounds.1) - low.clamp(bounds.0, bounds.1);
@@ -218,6 +244,11 @@ mod tests {
         );
         let beside = cube().map(|corner| corner + Vec3::new(100.0, 0.0, 0.0));
         assert!(view(10.0).covered(beside.into_iter()) < 1.0, "out of the picture it is nowhere");
+        assert_eq!(
+            view(-10.0).covered(cube().map(|corner| corner + Vec3::Z * 30.0).into_iter()),
+            0.0,
+            "behind the eye"
+        );
     }
 
     #[test]

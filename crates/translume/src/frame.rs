@@ -1,11 +1,23 @@
 //! What changes from frame to frame.
 
 use crate::layout::{MAX_AMBIENTS, MAX_LIGHTS};
-use crate::{Error, Light, Region, View};
+use crate::{Error, HostVertices, Light, Region, View};
 use glam::{Mat4, Vec3};
 use translume_mesh::{Warp, rig};
 
 /// The inputs of one frame.
+///
+/// ```
+/// use translume::{AmbientLight, Frame, Light, Lighting};
+/// use translume_mesh::Warp;
+///
+/// let sky = [Light::Ambient(AmbientLight::default())];
+/// let frame = Frame {
+///     warp: Warp { twist: 0.5, ..Default::default() },
+///     lighting: Lighting::Lights(&sky),
+///     ..Default::default()
+/// };
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Frame<'a> {
     /// Model space to world space, column-major.
@@ -24,6 +36,13 @@ pub struct Frame<'a> {
 }
 
 /// Opaque things of the host that cast shadows on a body.
+///
+/// ```
+/// use translume::{Casters, Frame, Region};
+///
+/// let room = Region { low: [-3.0, 0.0, -3.0], high: [3.0, 2.5, 3.0] };
+/// let frame = Frame { casters: Some(Casters { bounds: room, revision: 1 }), ..Default::default() };
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Casters {
     /// A box around them, world units. What lies beyond it casts no shadow.
@@ -33,6 +52,12 @@ pub struct Casters {
 }
 
 /// The pose of a body.
+///
+/// ```
+/// use translume::{Deformation, Frame};
+///
+/// let half_way = Frame { deformation: Deformation::Morph(&[0.5]), ..Default::default() };
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub enum Deformation<'a> {
@@ -49,6 +74,8 @@ pub enum Deformation<'a> {
         /// taken to be 0, 0, 0, 1).
         joints: &'a [[[f32; 4]; 4]],
     },
+    /// Vertices that the host deformed itself, in its own buffers. The warp must be none.
+    Vertices(HostVertices<'a>),
 }
 
 impl<'a> From<&'a rig::Pose> for Deformation<'a> {
@@ -58,6 +85,13 @@ impl<'a> From<&'a rig::Pose> for Deformation<'a> {
 }
 
 /// Where light comes from.
+///
+/// ```
+/// use translume::{DirectionalLight, Frame, Light, Lighting};
+///
+/// let sun = [Light::Directional(DirectionalLight { to_light: [0.3, 1.0, 0.2], ..Default::default() })];
+/// let frame = Frame { lighting: Lighting::Lights(&sun), ..Default::default() };
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Lighting<'a> {

@@ -201,6 +201,14 @@ const WORKGROUP: u32 = 64;
 const WORKGROUPS_PER_ROW: u32 = 65_535;
 
 /// How much was recorded.
+///
+/// ```no_run
+/// # fn example(device: &translume::wgpu::Device, queue: &translume::wgpu::Queue, body: &mut translume::Body) -> Result<(), translume::Error> {
+/// let mut encoder = device.create_command_encoder(&Default::default());
+/// let work = body.encode(&mut encoder);
+/// println!("{} draws, {} dispatches", work.draws, work.dispatches);
+/// # Ok(()) }
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Work {
     /// Draws of the body into depth maps, one per view. What the host draws there is not counted.

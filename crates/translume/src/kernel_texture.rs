@@ -3,6 +3,8 @@
 use crate::gpu;
 use crate::kernel_table::{self, KernelRange, KernelTableLayout};
 use crate::profile::Channels;
+use crate::{Medium, Profile};
+use std::sync::{Arc, Mutex, PoisonError};
 use translume_mesh::{Atlas, Mesh};
 
 /// How much longer than the body's diagonal the table reaches.
@@ -35,20 +37,30 @@ impl KernelTexture {
         Self { texture, view, relative_spread, columns, rows, diagonal: 0.0 }
     }
 
+    pub fn bytes(&self) -> u64 {
+        16 * u64::from(self.texture.width()) * u64::from(self.texture.height())
+    }
+
     /// Whether the content serves a body of this diagonal, mm.
     pub fn fits(&self, diagonal: f32) -> bool {
         (0.25..=1.0).contains(&(diagonal / self.diagonal))
     }
 
-    /// Computes the content for a medium. A body that outgrew the old content gets room to grow.
-    pub fn write(&mut self, queue: &wgpu::Queue, channels: &Channels, diagonal: f32) -> KernelTableLayout {
+    /// Computes the content for a medium, or takes it from `known`. A body that outgrew the old content gets room to grow.
+    pub fn write(
+        &mut self,
+        queue: &wgpu::Queue,
+        known: &KernelTables,
+        (profile, medium, channels): (&Profile, &Medium, &Channels),
+        diagonal: f32,
+    ) -> KernelTableLayout {
         if !self.fits(diagonal) {
             self.diagonal = 1.25 * diagonal.max(f32::MIN_POSITIVE);
         }
         let fresh = KernelTableLayout::new(range(self.diagonal, self.relative_spread));
         // The same proportions at another scale may round to another cell.
         let table = KernelTableLayout { columns: self.columns, rows: self.rows, ..fresh };
-        let texels = kernel_table::build(table, channels);
+        let texels = known.get(table, profile, medium, channels);
         let rows = wgpu::TexelCopyBufferLayout {
             offset: 0,
             bytes_per_row: Some(16 * (table.columns + 1)),
@@ -56,11 +68,56 @@ impl KernelTexture {
         };
         queue.write_texture(
             self.texture.as_image_copy(),
-            bytemuck::cast_slice(&texels),
+            bytemuck::cast_slice(texels.as_slice()),
             rows,
             self.texture.size(),
         );
         table
+    }
+}
+
+/// Contents made last: bodies of one shape and medium have the same.
+#[derive(Default)]
+pub(crate) struct KernelTables {
+    /// The newest last.
+    made: Mutex<Vec<Made>>,
+}
+
+/// So many are remembered.
+const REMEMBERED: usize = 16;
+
+struct Made {
+    layout: KernelTableLayout,
+    profile: Profile,
+    medium: Medium,
+    texels: Arc<Vec<[f32; 4]>>,
+}
+
+impl KernelTables {
+    fn get(
+        &self,
+        layout: KernelTableLayout,
+        profile: &Profile,
+        medium: &Medium,
+        channels: &Channels,
+    ) -> Arc<Vec<[f32; 4]>> {
+        let mut made = self.made.lock().unwrap_or_else(PoisonError::into_inner);
+        let known = made
+            .iter()
+            .position(|made| made.layout == layout && made.medium == *medium && made.profile == *profile);
+        let newest = match known {
+            Some(k) => made.remove(k),
+            None => {
+                let texels = Arc::new(kernel_table::build(layout, channels));
+                Made { layout, profile: profile.clone(), medium: *medium, texels }
+            }
+        };
+        let texels = Arc::clone(&newest.texels);
+        if made.len() == REMEMBERED {
+            made.remove(0);
+        }
+        made.push(newest);
+        texels
     }
 }
 

@@ -39,6 +39,16 @@ pub(crate) struct DeformLayout {
     pub winding: f32,
 }
 
+/// Where the host's vertices lie, in words from where its buffers are bound; a stride of 0 for none.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub(crate) struct AdoptLayout {
+    pub first_position: u32,
+    pub position_stride: u32,
+    pub first_normal: u32,
+    pub normal_stride: u32,
+}
+
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub(crate) struct InfluenceLayout {
@@ -235,6 +245,16 @@ pub(crate) struct DualLayout {
 }
 
 /// A group of texels seen as one source. Lengths in mm. Mirrors `Cluster` in `shared/cluster.wgsl`.
+///
+/// ```no_run
+/// # fn example(device: &translume::wgpu::Device, queue: &translume::wgpu::Queue, body: &mut translume::Body) -> Result<(), translume::Error> {
+/// use translume::{Cluster, readback};
+///
+/// let clusters: Vec<Cluster> = readback::buffer(device, queue, body.outputs().clusters)?;
+/// // The last one is the whole body.
+/// println!("{:?} leaves through {} mm²", clusters[clusters.len() - 1].power, clusters[clusters.len() - 1].area);
+/// # Ok(()) }
+/// ```
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct Cluster {
@@ -347,6 +367,7 @@ mod tests {
             [model, normal, warp, vertex_count, target_count, influences_per_vertex, winding]
         );
         check!(DEFORM, "Warp", WarpLayout, [foot, inflate, height, per_height, twist, bend]);
+        check!(ADOPT, "Adopt", AdoptLayout, [first_position, position_stride, first_normal, normal_stride]);
         check!(DEFORM, "Influence", InfluenceLayout, [joint, weight]);
         check!(
             GATHER,

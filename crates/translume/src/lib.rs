@@ -6,10 +6,10 @@
 //! ```no_run
 //! # fn example(device: &wgpu::Device, queue: &wgpu::Queue, mesh: &translume_mesh::Mesh, atlas: &translume_mesh::Atlas)
 //! #     -> Result<(), translume::Error> {
-//! use translume::{BodyDescriptor, Frame, Light, Lighting, Medium, PointLight, Translume};
+//! use translume::{BodyDescriptor, Config, Frame, Light, Lighting, Medium, PointLight, Translume};
 //!
 //! // once
-//! let translume = Translume::new(device)?;
+//! let translume = Translume::new(device, &Config::default())?;
 //! let mut body = translume.create_body(device, &BodyDescriptor {
 //!     medium: Medium::JADE,
 //!     ..BodyDescriptor::new(mesh, atlas)
@@ -38,23 +38,29 @@ mod bounds;
 mod buffers;
 mod camera;
 mod descriptor;
+mod device;
 mod environment;
 mod error;
 mod evaluate;
 mod frame;
 mod fresnel;
+mod geometry;
 mod gpu;
+mod host_vertices;
 mod kernel_table;
 mod kernel_texture;
 mod layout;
+mod levels;
 mod light;
 mod light_points;
 mod lighting;
 mod medium;
+mod memory;
 mod pose;
 mod profile;
 mod quadrature;
 pub mod readback;
+mod scratch;
 mod shadow_options;
 mod shadow_view;
 mod stages;
@@ -67,14 +73,19 @@ pub use body::Body;
 pub use buffers::Outputs;
 pub use camera::{Camera, LookAt};
 pub use descriptor::BodyDescriptor;
+pub use device::{largest_atlas, required_limits};
 pub use environment::{EnvironmentLight, EnvironmentMap};
-pub use error::Error;
+pub use error::{Error, MissingLimit};
 pub use evaluate::{Evaluate, View};
 pub use frame::{Casters, Deformation, Frame, Lighting};
+pub use geometry::Geometry;
 pub use gpu::Work;
+pub use host_vertices::{HostVertices, VertexVectors};
 pub use layout::Cluster;
+pub use levels::Levels;
 pub use light::{AmbientLight, DirectionalLight, Light, PointLight, Region, SpotLight};
 pub use medium::Medium;
+pub use memory::MemoryUse;
 pub use profile::{BurleyFit, BurleyShape, Diffusion, Entry, Layer, Layers, Profile, Reflectance, Table};
 pub use shadow_options::ShadowOptions;
 pub use stages::composite::{Composite, CompositeTarget, CompositeView, Gloss};
@@ -86,27 +97,46 @@ pub use variation::Variation;
 
 use std::sync::Arc;
 
-/// The pipelines, shared by all bodies of a device.
+/// How the library treats a device.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Config {
+    /// Bytes of GPU memory that all bodies may take together, as [`Body::memory`] counts them. What would exceed them is refused with
+    /// [`Error::Memory`]. `None` leaves it to the device.
+    pub memory: Option<u64>,
+}
+
+/// The pipelines, shared by all bodies of a device, and the memory that bodies may share.
+///
+/// ```no_run
+/// # fn example(device: &translume::wgpu::Device) -> Result<(), translume::Error> {
+/// use translume::{Config, Translume};
+///
+/// let translume = Translume::new(device, &Config { memory: Some(256 << 20) })?;
+/// # Ok(()) }
+/// ```
 pub struct Translume {
     stages: Arc<stages::Stages>,
+    ledger: Arc<memory::Ledger>,
 }
 
 impl Translume {
-    /// Compiles every pipeline.
+    /// Compiles every pipeline that most bodies need.
     ///
     /// # Errors
-    /// [`Error::Limit`] names the limit of the device that is too low. WebGPU's default limits are enough.
-    pub fn new(device: &wgpu::Device) -> Result<Self, Error> {
-        check_limits(&device.limits())?;
-        Ok(Self { stages: Arc::new(stages::Stages::new(device)) })
+    /// [`Error::Device`] names the limits of the device that are too low. WebGPU's default limits are enough.
+    pub fn new(device: &wgpu::Device, config: &Config) -> Result<Self, Error> {
+        device::check(&device.limits())?;
+        let ledger = memory::Ledger::new(config.memory);
+        Ok(Self { stages: Arc::new(stages::Stages::new(device, &ledger)), ledger })
     }
 
     /// Uploads a mesh and its atlas.
     ///
     /// # Errors
-    /// [`Error::Body`] names the element that cannot be; [`Error::Limit`] the limit that is too low; [`Error::Medium`] the coefficient.
+    /// [`Error::Body`] names the element that cannot be; [`Error::Limit`] the limit that is too low; [`Error::Medium`] the coefficient;
+    /// [`Error::Memory`] how many bytes there are left.
     pub fn create_body(&self, device: &wgpu::Device, descriptor: &BodyDescriptor<'_>) -> Result<Body, Error> {
-        Body::new(device, Arc::clone(&self.stages), descriptor)
+        Body::new(device, Arc::clone(&self.stages), &self.ledger, descriptor)
     }
 
     /// Pipelines that draw bodies into this kind of target.
@@ -114,38 +144,10 @@ impl Translume {
     pub fn composite(&self, device: &wgpu::Device, target: CompositeTarget) -> Composite {
         Composite::new(device, &self.stages.scatter.dual.points, target)
     }
-}
 
-/// The largest atlas whose texture a device with these limits can surely address, in texels. How many texels a surface fills also counts:
-/// [`Translume::create_body`] has the last word.
-#[must_use]
-pub fn largest_atlas(limits: &wgpu::Limits) -> u32 {
-    let pixels = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size) / 4;
-    limits.max_texture_dimension_2d.min(pixels.isqrt() as u32)
-}
-
-fn check_limits(limits: &wgpu::Limits) -> Result<(), Error> {
-    let needs = [
-        ("max_storage_buffers_per_shader_stage", 8, limits.max_storage_buffers_per_shader_stage),
-        (
-            "max_uniform_buffer_binding_size",
-            size_of::<layout::GatherLayout>() as u32,
-            limits.max_uniform_buffer_binding_size as u32,
-        ),
-        ("max_compute_invocations_per_workgroup", 64, limits.max_compute_invocations_per_workgroup),
-        ("max_compute_workgroups_per_dimension", 65_535, limits.max_compute_workgroups_per_dimension),
-        ("max_storage_textures_per_shader_stage", 1, limits.max_storage_textures_per_shader_stage),
-    ];
-    for (limit, required, actual) in needs {
-        if actual < required {
-            return Err(Error::Limit {
-                what: "translume".to_owned(),
-                limit,
-                required: required.into(),
-                actual: actual.into(),
-                remedy: "create the device with at least WebGPU's default limits",
-            });
-        }
+    /// Bytes of GPU memory that all bodies take, and what they share.
+    #[must_use]
+    pub fn memory(&self) -> u64 {
+        self.ledger.used()
     }
-    Ok(())
 }

@@ -8,6 +8,15 @@ use glam::Vec3;
 ///
 /// Irradiance, intensity and radiance share one unit of power and the host's unit of length, so what comes out has the unit that
 /// went in: a radiance of 1 all around a white body returns 1.
+///
+/// ```
+/// use translume::{AmbientLight, Light, PointLight};
+///
+/// let lights = [
+///     Light::Point(PointLight { position: [0.0, 2.0, 1.0], intensity: [5.0; 3], ..Default::default() }),
+///     Light::Ambient(AmbientLight { radiance: [0.1; 3], ..Default::default() }),
+/// ];
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Light {
@@ -28,6 +37,12 @@ pub enum Light {
 }
 
 /// Parallel light.
+///
+/// ```
+/// use translume::DirectionalLight;
+///
+/// let sun = DirectionalLight { to_light: [0.5, 1.0, 0.3], irradiance: [3.0, 2.8, 2.5], ..Default::default() };
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DirectionalLight {
     /// From the body towards the light; any length but zero.
@@ -41,6 +56,13 @@ pub struct DirectionalLight {
 }
 
 /// Light from a point.
+///
+/// ```
+/// use translume::PointLight;
+///
+/// // Irradiance 1 on a surface that faces it from half a unit away.
+/// let lamp = PointLight { position: [0.0, 0.5, 0.0], intensity: [0.25; 3], ..Default::default() };
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PointLight {
     /// Position, world units. It may lie inside a body.
@@ -54,6 +76,12 @@ pub struct PointLight {
 }
 
 /// Light from a point into a cone, as in the glTF extension `KHR_lights_punctual`.
+///
+/// ```
+/// use translume::SpotLight;
+///
+/// let spot = SpotLight { position: [0.0, 3.0, 0.0], direction: [0.0, -1.0, 0.0], outer_angle: 0.4, ..Default::default() };
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpotLight {
     /// Position, world units. It may lie inside a body.
@@ -73,6 +101,13 @@ pub struct SpotLight {
 }
 
 /// Uniform light from a cone of the sky.
+///
+/// ```
+/// use translume::AmbientLight;
+///
+/// // The upper half of the sky, shadowed by the body itself.
+/// let sky = AmbientLight { half_angle: std::f32::consts::FRAC_PI_2, shadow: true, ..Default::default() };
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AmbientLight {
     /// Radiance inside the cone, RGB.
@@ -86,6 +121,14 @@ pub struct AmbientLight {
 }
 
 /// An axis-aligned box, world units.
+///
+/// ```
+/// use translume::{DirectionalLight, Region};
+///
+/// // Light enters only where x is above 0: a straight edge of shadow.
+/// let half = Region { low: [0.0, -1e6, -1e6], high: [1e6; 3] };
+/// let sun = DirectionalLight { region: Some(half), ..Default::default() };
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Region {
     /// Least corner.

@@ -7,6 +7,15 @@ use crate::Error;
 /// A homogeneous scattering medium.
 ///
 /// Source of the presets: Jensen, Marschner, Levoy, Hanrahan 2001, "A Practical Model for Subsurface Light Transport", fig. 5.
+///
+/// ```
+/// use translume::Medium;
+///
+/// let wax = Medium::preset("wax")?;
+/// let green_glass_paste = Medium { sigma_s_prime: [0.8, 1.0, 0.8], sigma_a: [0.05, 0.002, 0.03], ior: 1.5 };
+/// green_glass_paste.validate()?;
+/// # Ok::<(), translume::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Medium {
     /// Reduced scattering coefficient σ_s' = σ_s (1 − g), RGB, 1/mm. Finite, ≥ 0.

@@ -1,19 +1,21 @@
 //! The pose that a frame asks for, complete and checked.
 
 use crate::buffers::Extent;
+use crate::host_vertices::Adopted;
 use crate::layout::{DeformLayout, WarpLayout};
 use crate::{Deformation, Error};
 use glam::Mat4;
 use std::f32::consts::TAU;
 use translume_mesh::warp::{Axis, Warp};
 
-/// A weight for every morph target, a matrix for every joint, and the warp.
+/// A weight for every morph target, a matrix for every joint, and the warp; or the host's vertices in place of all that.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Pose {
     pub weights: Vec<f32>,
     /// From the mesh at rest to model space, column-major.
     pub joints: Vec<[[f32; 4]; 4]>,
     pub warp: Warp,
+    pub adopted: Option<Adopted>,
 }
 
 impl Pose {
@@ -23,25 +25,35 @@ impl Pose {
             weights: vec![0.0; extent.targets as usize],
             joints: vec![Mat4::IDENTITY.to_cols_array_2d(); extent.joints as usize],
             warp: Warp::default(),
+            adopted: None,
         }
     }
 
     /// Becomes what a frame asks for, in the memory it has. After an error it is neither the old pose nor the new one.
     pub fn set(&mut self, deformation: Deformation<'_>, warp: Warp) -> Result<(), Error> {
-        let (weights, joints) = match deformation {
-            Deformation::Rest => (None, None),
-            Deformation::Morph(weights) => (Some(weights), None),
-            Deformation::Pose { weights, joints } => (Some(weights), Some(joints)),
+        let (weights, joints, vertices) = match deformation {
+            Deformation::Rest => (None, None, None),
+            Deformation::Morph(weights) => (Some(weights), None, None),
+            Deformation::Pose { weights, joints } => (Some(weights), Some(joints), None),
+            Deformation::Vertices(vertices) => (None, None, Some(vertices)),
         };
         validate_warp(&warp)?;
+        if vertices.is_some() && !warp.is_identity() {
+            let problem = "a warp of vertices that the host deforms".to_owned();
+            return Err(Error::Frame { problem, remedy: "warp them in the host, or let the library deform" });
+        }
         self.warp = warp;
+        self.adopted = vertices.as_ref().map(Adopted::new).transpose()?;
         self.set_weights(weights)?;
         self.set_joints(joints)
     }
 
     /// Whether normals have to follow the pose.
     pub fn deforms(&self) -> bool {
-        !self.weights.is_empty() || !self.joints.is_empty() || !self.warp.is_identity()
+        match &self.adopted {
+            Some(adopted) => !adopted.has_normals(),
+            None => !self.weights.is_empty() || !self.joints.is_empty() || !self.warp.is_identity(),
+        }
     }
 
     /// As WGSL reads it, but for the arrays. `axis` is that of warps that bring none.

@@ -3,6 +3,15 @@
 use crate::Error;
 
 /// How finely shadows are computed: cost against error. Every number may change from frame to frame; no pipeline is rebuilt.
+///
+/// ```no_run
+/// # fn example(device: &translume::wgpu::Device, queue: &translume::wgpu::Queue, body: &mut translume::Body) -> Result<(), translume::Error> {
+/// use translume::ShadowOptions;
+///
+/// // Half as fine, and an eighth of the sky renewed in each frame.
+/// body.set_shadows(ShadowOptions { resolution: 512, directions_per_frame: 8, ..Default::default() })?;
+/// # Ok(()) }
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ShadowOptions {
     /// Width of the depth map of a directional, point or spot light in texels, from 16 to the device's

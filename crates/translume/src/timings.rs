@@ -16,6 +16,17 @@ const SLOTS: usize = 4;
 const QUERIES: usize = 1 + 2 * STAGES;
 
 /// Where a duration comes from.
+///
+/// ```no_run
+/// # fn example(device: &translume::wgpu::Device, queue: &translume::wgpu::Queue, body: &mut translume::Body) -> Result<(), translume::Error> {
+/// use translume::Clock;
+///
+/// if let Some(timings) = body.timings() {
+///     let of = if timings.clock == Clock::Gpu { "of the GPU" } else { "until it was heard of" };
+///     println!("{:?} {of}", timings.total);
+/// }
+/// # Ok(()) }
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Clock {
     /// Timestamps of the GPU.
@@ -27,6 +38,18 @@ pub enum Clock {
 }
 
 /// How long a frame took.
+///
+/// ```no_run
+/// # fn example(device: &translume::wgpu::Device, queue: &translume::wgpu::Queue, body: &mut translume::Body) -> Result<(), translume::Error> {
+/// use translume::Stage;
+///
+/// body.set_timings(true);
+/// // some frames later
+/// if let Some(scatter) = body.timings().and_then(|timings| timings.stage(Stage::Scatter)) {
+///     println!("scatter: {scatter:?}");
+/// }
+/// # Ok(()) }
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FrameTimings {
     /// Which frame: how many times the body had been prepared since timings were turned on, from 1.

@@ -7,6 +7,18 @@ pub(crate) const VERTEX_MARK: u32 = 1 << 31;
 
 /// How the medium under one texel differs from that of the body. An approximation: light that crosses several media is treated as if it had
 /// stayed in the one where it entered.
+///
+/// ```no_run
+/// # fn example(device: &translume::wgpu::Device, queue: &translume::wgpu::Queue, body: &mut translume::Body) -> Result<(), translume::Error> {
+/// use translume::Variation;
+///
+/// // A freckle every hundred texels.
+/// let freckle = Variation { albedo: [0.6, 0.4, 0.3], ..Default::default() };
+/// let texels: Vec<_> =
+///     (0..body.texels()).map(|k| if k % 100 == 0 { freckle } else { Variation::default() }).collect();
+/// body.set_variation(queue, Some(&texels))?;
+/// # Ok(()) }
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Variation {
     /// Linear RGB, 0..=1, kept in 255 steps of its square root. Half of it, its square root, multiplies the light that enters and half what

@@ -1,10 +1,11 @@
-//! Project chores: `cargo xtask demo | test | ci | bench`. Standard library only, so that it builds in seconds.
+//! Project chores: `cargo xtask demo | test | ci | bench | package`. Standard library only, so that it builds in seconds.
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "a command-line tool talks to its terminal")]
 
 mod ci;
 mod demo;
 mod driver;
 mod install;
+mod package;
 mod process;
 mod test;
 
@@ -18,7 +19,7 @@ struct Chore {
     run: fn(&[String]) -> Outcome,
 }
 
-const CHORES: [Chore; 5] = [
+const CHORES: [Chore; 6] = [
     Chore {
         name: "demo",
         summary: "render a still and an animation of a jade creature into out/",
@@ -38,6 +39,11 @@ const CHORES: [Chore; 5] = [
         name: "bench",
         summary: "Criterion runs of translume-benches; further arguments go to cargo bench",
         run: test::bench,
+    },
+    Chore {
+        name: "package",
+        summary: "pack every published crate, and build and run a project from the packages alone",
+        run: package::package,
     },
     Chore { name: "help", summary: "this text", run: |_| help() },
 ];
@@ -77,7 +83,7 @@ fn help() -> Outcome {
 
 fn help_text() -> String {
     let lines: String =
-        CHORES.iter().map(|chore| format!("  {:<6} {}\n", chore.name, chore.summary)).collect();
+        CHORES.iter().map(|chore| format!("  {:<8} {}\n", chore.name, chore.summary)).collect();
     format!(
         "cargo xtask COMMAND\n\n{lines}\n\
          demo, test, ci and bench need a graphics driver. On Debian and Ubuntu a missing Vulkan driver is\n\
@@ -97,7 +103,7 @@ mod tests {
     fn help_lists_every_command() {
         let text = help_text();
         for chore in &CHORES {
-            assert!(text.contains(&format!("  {:<6} {}", chore.name, chore.summary)), "{}", chore.name);
+            assert!(text.contains(&format!("  {:<8} {}", chore.name, chore.summary)), "{}", chore.name);
         }
         assert!(!text.contains("  deploy"), "the check above must be able to miss a command");
     }

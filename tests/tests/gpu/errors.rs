@@ -2,7 +2,10 @@
 
 use glam::{Mat4, Vec3};
 use std::sync::Arc;
-use translume::{DirectionalLight, Frame, Light, Lighting, Medium, PointLight};
+use translume::{
+    BodyDescriptor, Config, DirectionalLight, Error, Frame, Light, Lighting, Medium, PointLight, Translume,
+    required_limits, wgpu,
+};
 use translume_mesh::warp::Axis;
 use translume_mesh::{Skin, Warp};
 use translume_tests::{Fixture, Model, Pose, creature, gpu, limb, sphere};
@@ -155,4 +158,43 @@ fn bad_bodies_are_refused_by_name() {
     let message = Fixture::try_new(&sphere(), |d| d.shadows.resolution = 8).err().unwrap().to_string();
     assert!(message.contains("resolution is 8"), "[{}] {message}", gpu().adapter_name);
     Fixture::try_new(&sphere(), |d| d.shadows.resolution = 16).map(|_| ()).unwrap();
+}
+
+/// A device of the adapter under test with these limits and no feature.
+fn device_with(required_limits: wgpu::Limits) -> wgpu::Device {
+    let adapter = pollster::block_on(wgpu::util::initialize_adapter_from_env(&gpu().instance, None))
+        .or_else(|_| {
+            pollster::block_on(gpu().instance.request_adapter(&wgpu::RequestAdapterOptions::default()))
+        })
+        .unwrap();
+    let descriptor = wgpu::DeviceDescriptor { required_limits, ..Default::default() };
+    pollster::block_on(adapter.request_device(&descriptor)).unwrap().0
+}
+
+#[test]
+fn a_device_is_told_all_that_it_lacks() {
+    let poor = wgpu::Limits {
+        max_storage_buffers_per_shader_stage: 4,
+        max_uniform_buffer_binding_size: 16 << 10,
+        ..wgpu::Limits::default()
+    };
+    let error = Translume::new(&device_with(poor), &Config::default()).map(|_| ()).unwrap_err();
+    let text = error.to_string();
+    for words in [
+        "max_storage_buffers_per_shader_stage ≥ 8 (it has 4)",
+        "max_uniform_buffer_binding_size ≥ ",
+        "(it has 16384)",
+    ] {
+        assert!(text.contains(words), "{text}");
+    }
+    let Error::Device { missing } = error else { panic!("{error:?}") };
+    assert_eq!(missing.len(), 2, "{missing:?}");
+}
+
+#[test]
+fn the_least_device_that_is_asked_for_does() {
+    let device = device_with(required_limits());
+    let translume = Translume::new(&device, &Config::default()).unwrap();
+    let model = creature();
+    translume.create_body(&device, &BodyDescriptor::new(&model.mesh, &model.atlas)).unwrap();
 }

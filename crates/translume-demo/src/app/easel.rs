@@ -23,7 +23,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, RecvError, TryRecvError};
 use std::time::Instant;
-use translume::{Camera, Composite, Frame, Light, Lighting, Translume, View, readback};
+use translume::{Camera, Composite, Config, Frame, Light, Lighting, Translume, View, readback};
 
 /// The seat of what is exported.
 const EXPORT: usize = 2;
@@ -59,7 +59,7 @@ struct Lit {
 
 impl Easel {
     pub fn new(gpu: Gpu) -> Result<Self, Error> {
-        let translume = Translume::new(&gpu.device)?;
+        let translume = Translume::new(&gpu.device, &Config::default())?;
         let (developer, painter) = (Developer::new(&gpu.device), Painter::new(&gpu.device));
         let composite = Canvas::composite(&gpu.device, &translume);
         Ok(Self { gpu, translume, composite, developer, painter, seats: [None, None, None] })

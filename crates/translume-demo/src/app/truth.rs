@@ -19,7 +19,7 @@ use std::path::Path;
 use std::sync::atomic::Ordering;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Instant;
-use translume::{Body, Evaluate, Frame, Lighting, Method, Translume, readback, wgpu};
+use translume::{Body, Config, Evaluate, Frame, Lighting, Method, Translume, readback, wgpu};
 
 /// Pixels across a picture by paths.
 const WIDTH: u32 = 192;
@@ -127,7 +127,7 @@ fn errors(scene: &Scene, loaded: &Loaded, court: &Court) -> Result<Judged, Error
     let mut court = court.lock().unwrap_or_else(PoisonError::into_inner);
     if court.is_none() {
         let gpu = Gpu::new()?;
-        let translume = Translume::new(&gpu.device)?;
+        let translume = Translume::new(&gpu.device, &Config::default())?;
         *court = Some((gpu, translume));
     }
     let Some((gpu, translume)) = &*court else { return Err(Error::Worker) };

@@ -14,13 +14,13 @@ use crate::render::check_atlas;
 use indicatif::ProgressBar;
 use std::path::Path;
 use std::time::Instant;
-use translume::Translume;
+use translume::{Config, Translume};
 
 pub fn run(arguments: &Report) -> Result<(), Error> {
     prepare_folder(&arguments.output)?;
     let gpu = Gpu::new()?;
     check_atlas(arguments.atlas, &gpu)?;
-    let translume = Translume::new(&gpu.device)?;
+    let translume = Translume::new(&gpu.device, &Config::default())?;
     let every = arguments.every.unwrap_or(if arguments.quick { 31 } else { 7 });
     let (warm_up, timed) = if arguments.quick { (1, 1) } else { (2, 5) };
     let header = Header { adapter: &gpu.adapter, atlas: arguments.atlas, every, timed };

@@ -80,6 +80,7 @@ pub fn repair(mesh: Mesh) -> Result<(Mesh, RepairReport), RepairError> {
 pub fn repair_with(mut mesh: Mesh, options: &RepairOptions) -> Result<(Mesh, RepairReport), RepairError> {
     check::check(&mesh)?;
     let mut report = RepairReport::default();
+    let given = mesh.positions.len();
     if let Some(share) = options.weld_distance {
         snap(&mut mesh, share)?;
     }
@@ -97,14 +98,16 @@ pub fn repair_with(mut mesh: Mesh, options: &RepairOptions) -> Result<(Mesh, Rep
         let welded = weld(&mesh.positions);
         while mend(&mut mesh, &welded, options.orient, &mut report) {}
     }
-    report.dropped_vertices = vertices::drop_unused(&mut mesh);
+    report.origins =
+        (0..mesh.positions.len()).map(|v| if v < given { v as u32 } else { RepairReport::NEW }).collect();
+    report.dropped_vertices = vertices::drop_unused(&mut mesh, &mut report.origins);
     report.computed_normals = vertices::complete_normals(&mut mesh);
     if options.orient {
         report.turned_normals = vertices::turn_normals(&mut mesh);
     }
     if options.weld_distance.is_some() {
         report.welded_vertices = vertices::join_equal(&mut mesh);
-        vertices::drop_unused(&mut mesh);
+        vertices::drop_unused(&mut mesh, &mut report.origins);
     }
     Ok((mesh, report))
 }

@@ -32,13 +32,19 @@ pub struct RepairReport {
     pub unorientable_pieces: usize,
     /// Whether some or all normals were missing, zero or not finite, and were computed.
     pub computed_normals: bool,
+    /// For each vertex of the repaired mesh its number in the mesh that was given, or [`NEW`](Self::NEW): where a caller's own vertex
+    /// buffer keeps it.
+    pub origins: Vec<u32>,
 }
 
 impl RepairReport {
+    /// The origin of a vertex that closes a hole.
+    pub const NEW: u32 = u32::MAX;
+
     /// Whether the mesh came through as it was (computed normals aside) and is closed and consistently oriented.
     #[must_use]
     pub fn is_pristine(&self) -> bool {
-        Self { computed_normals: false, ..self.clone() } == Self::default()
+        Self { computed_normals: false, origins: Vec::new(), ..self.clone() } == Self::default()
     }
 }
 

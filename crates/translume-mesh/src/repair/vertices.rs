@@ -65,8 +65,8 @@ fn carry_the_same(mesh: &Mesh, a: u32, b: u32) -> bool {
         && influences(a) == influences(b)
 }
 
-/// Drops vertices that no triangle uses; returns how many.
-pub(super) fn drop_unused(mesh: &mut Mesh) -> usize {
+/// Drops vertices that no triangle uses, and their `origins`; returns how many.
+pub(super) fn drop_unused(mesh: &mut Mesh, origins: &mut Vec<u32>) -> usize {
     let mut used = vec![false; mesh.positions.len()];
     mesh.triangles.iter().flatten().for_each(|&v| used[v as usize] = true);
     let unused = used.iter().filter(|&&used| !used).count();
@@ -80,6 +80,7 @@ pub(super) fn drop_unused(mesh: &mut Mesh) -> usize {
     });
     let renumbered: Vec<u32> = before.collect();
     mesh.triangles.iter_mut().flatten().for_each(|v| *v = renumbered[*v as usize]);
+    retain(origins, &used);
     retain(&mut mesh.positions, &used);
     retain(&mut mesh.normals, &used);
     mesh.targets.iter_mut().for_each(|target| retain(&mut target.position_deltas, &used));

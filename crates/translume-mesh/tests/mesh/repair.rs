@@ -86,7 +86,7 @@ fn vertices_keep_their_data_when_others_go() {
         position_deltas: vec![[0.0; 3], [f32::NAN; 3], [1.0; 3], [2.0; 3], [3.0; 3]],
     });
     let (mesh, report) = repair(mesh).unwrap();
-    assert_eq!(report.dropped_vertices, 1);
+    assert_eq!((report.dropped_vertices, report.origins), (1, vec![0, 2, 3, 4]));
     assert_eq!((mesh.positions, mesh.triangles), (tetrahedron().positions, tetrahedron().triangles));
     assert_eq!(mesh.targets[0].position_deltas, [[0.0; 3], [1.0; 3], [2.0; 3], [3.0; 3]]);
 }

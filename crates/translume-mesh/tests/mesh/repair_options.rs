@@ -192,6 +192,26 @@ fn copies_of_a_vertex_become_one_if_asked_and_only_if_they_carry_the_same() {
 }
 
 #[test]
+fn what_remains_tells_where_it_came_from() {
+    // Welding drops two of every three copies, a hole of more than eight edges gets a vertex in its middle.
+    let mut open = sphere(2);
+    let high = |v: u32| open.positions[v as usize][1] > 0.5;
+    let kept = open.triangles.iter().filter(|t| !t.iter().all(|&v| high(v))).copied().collect();
+    open.triangles = kept;
+    let filling = RepairOptions { fill_holes: Some(40), ..RepairOptions::default() };
+    for (mesh, options, made) in [(split(), welding(0.0), 0), (open, filling, 1)] {
+        let (repaired, report) = repair_with(mesh.clone(), &options).unwrap();
+        assert_eq!(report.origins.len(), repaired.positions.len());
+        assert!(repaired.positions.len() < mesh.positions.len());
+        assert_eq!(report.origins.iter().filter(|origin| **origin == RepairReport::NEW).count(), made);
+        for (position, origin) in repaired.positions.iter().zip(&report.origins) {
+            let expected = mesh.positions.get(*origin as usize).unwrap_or(position);
+            assert_eq!(position, expected);
+        }
+    }
+}
+
+#[test]
 fn copies_that_differ_by_rounding_close_within_a_distance() {
     let mut mesh = split();
     let mut random = Random(1);

@@ -3,6 +3,7 @@
 use super::Body;
 use crate::gpu::Pass;
 use crate::stages::Stage;
+use crate::stages::deform::Source;
 use crate::stages::shadow::ShadowView;
 use crate::timings::{FrameTimings, Recording};
 use crate::{Method, Work};
@@ -28,7 +29,8 @@ impl Body {
         self.record(encoder, Stage::Resolve, &mut |_, _| ())
     }
 
-    /// Records those of the pending stages that come before or are `last`; the others stay pending.
+    /// Records those of the pending stages that come before or are `last`; the others stay pending. A body that shares scratch memory never
+    /// stops between shadow and gather.
     pub fn encode_through(&mut self, encoder: &mut wgpu::CommandEncoder, last: Stage) -> Work {
         self.record(encoder, last, &mut |_, _| ())
     }
@@ -71,16 +73,23 @@ impl Body {
         last: Stage,
         casters: &mut dyn FnMut(&mut wgpu::RenderPass<'_>, usize),
     ) -> Work {
+        // Other bodies may draw into shared depth maps before those of this one are read.
+        let last = if self.shares_scratch && last == Stage::Shadow { Stage::Gather } else { last };
         let pending = self.pending.take_through(last);
         let at_points = self.points().is_some();
         let (mut recording, stages) = (Recording::begin(self.timer.as_mut()), &self.stages);
         let (texels, indices) = (self.extent.texels, self.extent.triangles * 3);
         if pending.contains(Stage::Deform) {
+            let source = match self.host.group().filter(|_| self.pose.adopted.is_some()) {
+                Some(group) => Source::Host(group),
+                None if self.extent.influences_per_vertex > 0 => Source::Skin,
+                None => Source::Rest,
+            };
             stages.deform.encode(
                 &mut Pass::begin(encoder, Stage::Deform, &mut recording),
                 &self.deform_groups,
                 (self.extent.vertices, self.extent.corners),
-                self.extent.influences_per_vertex > 0,
+                &source,
                 self.pose.deforms(),
             );
         }
@@ -124,11 +133,12 @@ impl Body {
         }
         if pending.contains(Stage::Scatter) {
             let mut pass = Pass::begin(encoder, Stage::Scatter, &mut recording);
-            match (&self.dual, &self.pattern, self.method.resolved()) {
+            let pattern = self.pattern.as_ref().zip(stages.scatter.pattern.get());
+            match (&self.dual, pattern, self.method.resolved()) {
                 (Some(memory), _, Method::Dual { .. }) => {
                     stages.scatter.dual.encode(&mut pass, memory, &self.tree, self.extent.vertices);
                 }
-                (_, Some(memory), Method::Pattern) => memory.encode(&mut pass, texels),
+                (_, Some((memory, stage)), Method::Pattern) => stage.encode(&mut pass, memory, texels),
                 _ => stages.scatter.encode(&mut pass, &self.scatter_group, (self.method, self.kind), texels),
             }
         }

@@ -5,8 +5,8 @@ use crate::Error;
 use crate::evaluate::Evaluate;
 use crate::profile::{Profile, smooth_length};
 use crate::stages::cluster::Tree;
-use crate::stages::scatter::dual::{self, Demand};
-use crate::stages::scatter::pattern::PatternMemory;
+use crate::stages::scatter::dual::{self, Demand, ListSizes, Lists};
+use crate::stages::scatter::pattern::{Pattern, PatternMemory};
 use crate::stages::scatter::{Method, Scatter};
 use crate::stages::{Stage, StageSet};
 use std::sync::Arc;
@@ -17,8 +17,8 @@ impl Body {
         if !self.scatter_stale && self.kernel.fits(diagonal) {
             return;
         }
-        let channels = self.profile.channels(&self.medium);
-        self.table = self.kernel.write(queue, &channels, diagonal);
+        let (channels, known) = (self.profile.channels(&self.medium), &self.stages.kernel_tables);
+        self.table = self.kernel.write(queue, known, (&self.profile, &self.medium, &channels), diagonal);
         self.kind.monochrome = channels[1..].iter().all(|channel| Arc::ptr_eq(channel, &channels[0]));
         self.kind.oriented = self.profile.is_oriented();
         self.smooth_length = smooth_length(&channels);
@@ -28,6 +28,7 @@ impl Body {
 
     /// Makes anew what depends on the method, or on the table.
     pub(super) fn refresh_method(&mut self, device: &wgpu::Device, queue: &wgpu::Queue) {
+        self.method_stale |= self.scratch_grew(device);
         if !self.method_stale {
             return;
         }
@@ -37,10 +38,16 @@ impl Body {
         if let Some(theta) = self.dual_theta() {
             let (stage, tree) = (&self.stages.scatter.dual, &self.tree);
             let demand = Demand { list_entries: self.list_entries, theta, evaluate: self.evaluated };
-            self.dual = self.dual.take().filter(|memory| memory.serves(demand, tree, &self.limits));
-            let memory = self
-                .dual
-                .get_or_insert_with(|| stage.memory(device, &self.buffers, &self.kernel.view, tree, demand));
+            let sizes = ListSizes::new(tree, demand, &self.limits);
+            let shared = self.shares_lists(demand.evaluate).then(|| self.stages.scratch.lists(device, sizes));
+            let is_here =
+                |lists: &Arc<Lists>| shared.as_ref().is_none_or(|shared| Arc::ptr_eq(shared, lists));
+            let serves = |m: &mut DualMemory| m.serves(demand, tree, &self.limits) && is_here(&m.lists);
+            self.dual = self.dual.take_if(serves);
+            let memory = self.dual.get_or_insert_with(|| {
+                let lists = shared.unwrap_or_else(|| Arc::new(Lists::new(device, sizes)));
+                stage.memory(device, (&self.buffers, &self.kernel.view), (tree, demand), lists)
+            });
             memory.kind = self.kind;
             memory.write(queue, &layout, tree, theta);
             stage.compile(memory);
@@ -50,7 +57,9 @@ impl Body {
         }
         if self.method == Method::Pattern {
             let (buffers, view, plan) = (&self.buffers, &self.kernel.view, &self.plan);
-            let memory = self.pattern.get_or_insert_with(|| PatternMemory::new(device, buffers, view, plan));
+            let stage = self.stages.scatter.pattern.get_or_init(|| Pattern::new(device));
+            let memory =
+                self.pattern.get_or_insert_with(|| PatternMemory::new(device, stage, buffers, view, plan));
             memory.write(queue, plan, self.table, &self.medium);
         }
         let uniforms = Scatter::uniforms(layout);

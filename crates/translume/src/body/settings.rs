@@ -9,7 +9,7 @@ use crate::stages::scatter::Method;
 use crate::stages::visibility::SkyMemory;
 use crate::stages::{Stage, StageSet};
 use crate::variation::{VERTEX_MARK, Variation};
-use crate::{Error, Medium, Profile, ShadowOptions};
+use crate::{Error, Geometry, Medium, Profile, ShadowOptions, View};
 
 impl Body {
     /// Changes how finely shadows are computed; the next frame looks anew from every light.
@@ -152,6 +152,32 @@ impl Body {
     #[must_use]
     pub fn exitance_texture(&self) -> &wgpu::Texture {
         &self.exitance
+    }
+
+    /// The deformed surface, for pipelines of the host's own.
+    #[must_use]
+    pub fn geometry(&self) -> Geometry<'_> {
+        Geometry {
+            vertices: &self.buffers.atlas_vertices,
+            corners: &self.buffers.corners,
+            indices: &self.buffers.atlas_indices,
+            index_count: self.extent.triangles * 3,
+        }
+    }
+
+    /// Pixels of a picture that the box around the body covers at most, in the pose that was prepared last: for choosing a level of detail, and 0
+    /// where it is out of sight.
+    #[must_use]
+    pub fn covered(&self, view: &View) -> f32 {
+        let corners =
+            self.bounds.posed(&self.pose).corners().map(|corner| self.model.transform_point3(corner));
+        view.covered(corners.into_iter())
+    }
+
+    /// How many texels light is computed at.
+    #[must_use]
+    pub fn texels(&self) -> u32 {
+        self.extent.texels
     }
 
     /// What the stages wrote, for copies and read-back.

@@ -5,6 +5,16 @@ use crate::boundary::Boundary;
 use glam::{DMat3, DVec3};
 
 /// Light from everywhere, as nine spherical harmonics of radiance.
+///
+/// ```
+/// use translume::{EnvironmentLight, EnvironmentMap};
+///
+/// let white = EnvironmentMap::new(8, 4, vec![[1.0; 3]; 32])?.project();
+/// // Radiance 1 from everywhere is an irradiance of π, whichever way a surface faces.
+/// let irradiance = white.irradiance(1.0, [0.0, 1.0, 0.0]);
+/// assert!((irradiance[0] - std::f32::consts::PI).abs() < 1e-3);
+/// # Ok::<(), translume::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EnvironmentLight {
     /// RGB coefficients L of the real orthonormal harmonics, so that the radiance from a unit direction (x, y, z) is the sum of

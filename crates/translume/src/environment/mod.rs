@@ -17,6 +17,20 @@ use grid::Grid;
 ///
 /// y is up: row 0 touches +y, the last row −y. With u from 0 to 1 along a row, v from 0 to 1 downwards, θ = πv and φ = 2πu, light comes
 /// from the direction (−cos φ sin θ, cos θ, −sin φ sin θ): u = 0 is −x, 0.25 is −z, 0.5 is +x, 0.75 is +z.
+///
+/// ```
+/// use translume::{EnvironmentMap, Light};
+///
+/// // A grey sky over a dark ground, with one bright pixel for a sun.
+/// let mut pixels = vec![[0.4_f32; 3]; 32 * 8];
+/// pixels.extend(vec![[0.05; 3]; 32 * 8]);
+/// pixels[5 * 32 + 7] = [900.0, 800.0, 600.0];
+/// let map = EnvironmentMap::new(32, 16, pixels)?;
+/// let (suns, sky) = map.split_peaks();
+/// assert_eq!(suns.len(), 1);
+/// let lights: Vec<Light> = suns.into_iter().map(Light::Directional).chain([Light::Environment(sky)]).collect();
+/// # Ok::<(), translume::Error>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct EnvironmentMap {
     width: u32,

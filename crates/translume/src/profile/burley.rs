@@ -7,6 +7,14 @@ use crate::{Error, Medium};
 use std::f64::consts::PI;
 
 /// Which of the three fits of Christensen and Burley 2015 shapes the profile.
+///
+/// ```
+/// use translume::{BurleyFit, Profile};
+///
+/// let profile = Profile::NormalisedDiffusion(BurleyFit::Searchlight);
+/// assert_eq!(profile, Profile::named("normalised-diffusion-searchlight")?);
+/// # Ok::<(), translume::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub enum BurleyFit {
@@ -46,6 +54,12 @@ impl BurleyFit {
 }
 
 /// What shapes the profile of each channel, RGB.
+///
+/// ```
+/// use translume::{BurleyFit, Medium};
+///
+/// let shape = BurleyFit::Diffuse.shape(&Medium::SKIN1);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BurleyShape {
     /// Albedo A of the surface, 0..=1.

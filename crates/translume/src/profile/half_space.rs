@@ -11,6 +11,12 @@ use std::f64::consts::{LN_2, TAU};
 use std::sync::LazyLock;
 
 /// How light goes on when it has just entered.
+///
+/// ```
+/// use translume::{Entry, Profile};
+///
+/// assert_eq!(Profile::default(), Profile::HalfSpace(Entry::Normal));
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Entry {
     /// Along the normal. What enters aslant wanders as far, and more of it returns: the gather knows the angle of each light and multiplies with

@@ -12,6 +12,16 @@ use std::sync::Arc;
 ///
 /// The layers are flat and go on sideways without end: right where they are thin against the radii of curvature. Index of
 /// refraction may change from layer to layer.
+///
+/// ```
+/// use translume::{Layer, Layers, Medium, Profile};
+///
+/// // 1.5 mm of skin over fat without end.
+/// let fat = Layer { medium: Medium { sigma_s_prime: [1.2, 1.1, 1.0], sigma_a: [0.01, 0.02, 0.04], ior: 1.3 }, thickness_mm: f32::INFINITY };
+/// let profile = Profile::Multipole(Layers { thickness_mm: 1.5, below: [fat].into() });
+/// profile.validate()?;
+/// # Ok::<(), translume::Error>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Layers {
     /// Thickness of the body's own medium, mm: > 0, infinite for a half-space.
@@ -28,6 +38,12 @@ impl Default for Layers {
 }
 
 /// A flat sheet of a medium.
+///
+/// ```
+/// use translume::{Layer, Medium};
+///
+/// let layer = Layer { medium: Medium::SKIN2, thickness_mm: 2.0 };
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Layer {
     /// The medium.

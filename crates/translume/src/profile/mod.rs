@@ -46,6 +46,16 @@ pub(crate) fn smooth_length(channels: &Channels) -> f32 {
 ///
 /// All are for a flat half-space lit at one point. All but [`Dipole`](Self::Dipole) divide F_t by its hemispherical mean 1 − F_dr,ext on
 /// the way to the eye, so that what B says leaves does leave. Figures of accuracy, and which to take when: docs/method.md.
+///
+/// ```
+/// use translume::{Medium, Profile};
+///
+/// // R_d of skin one millimetre from where light enters, 1/mm².
+/// let reflectance = Profile::default().reflectance(&Medium::SKIN1)?;
+/// let [red, green, blue] = reflectance.at(1.0);
+/// assert!(red > green && green > blue);
+/// # Ok::<(), translume::Error>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Profile {
@@ -91,6 +101,13 @@ pub enum Profile {
 }
 
 /// A profile that leaves out light scattered once.
+///
+/// ```
+/// use translume::{Diffusion, Profile};
+///
+/// assert_eq!(Profile::named("photon-beam-single")?, Profile::WithSingleScattering(Diffusion::PhotonBeam));
+/// # Ok::<(), translume::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Diffusion {

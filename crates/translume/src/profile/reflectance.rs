@@ -4,6 +4,15 @@ use super::{Channels, Profile};
 use crate::{Error, Medium};
 
 /// Radial diffuse reflectance of a medium by a profile, in double precision: for plots and comparisons, not for shaders.
+///
+/// ```
+/// use translume::{Medium, Profile};
+///
+/// let reflectance = Profile::default().reflectance(&Medium::MARBLE)?;
+/// // Marble returns most of what enters.
+/// assert!(reflectance.total().iter().all(|share| (0.6..1.0).contains(share)));
+/// # Ok::<(), translume::Error>(())
+/// ```
 pub struct Reflectance {
     channels: Channels,
 }

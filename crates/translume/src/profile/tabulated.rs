@@ -7,6 +7,15 @@ use std::sync::Arc;
 
 /// Radii and R_d there, for measured profiles: straight lines between in ln R_d over ln r, constant before the first radius, an
 /// exponential with the slope of the last two beyond.
+///
+/// ```
+/// use translume::{Profile, Table};
+///
+/// let table = Table { radii: [0.1, 1.0, 5.0].into(), values: [[0.5; 3], [0.05; 3], [0.0005; 3]].into() };
+/// let profile = Profile::Tabulated(table);
+/// profile.validate()?;
+/// # Ok::<(), translume::Error>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Table {
     /// r, mm: at least two, ascending, finite, > 0.

@@ -4,13 +4,24 @@
 //! twin   `translume_reference::composite`           WGSL    `composite.wgsl`
 
 use crate::gpu::{self, DEPTH_MAPS, FLOAT_TEXTURE, MediumKind, UNIFORM};
-use crate::layout::{AtlasVertexLayout, CompositeLayout};
+use crate::layout::CompositeLayout;
 use crate::stages::scatter::points::{PointMemory, Points};
-use crate::{Body, Camera};
+use crate::{Body, Camera, Geometry};
 use std::sync::OnceLock;
 use wgpu::ShaderStages;
 
 /// What the host draws into.
+///
+/// ```
+/// use translume::{CompositeTarget, wgpu};
+///
+/// // A renderer with reversed depth and four samples a pixel.
+/// let target = CompositeTarget {
+///     depth: Some((wgpu::TextureFormat::Depth32Float, wgpu::CompareFunction::Greater)),
+///     samples: 4,
+///     ..Default::default()
+/// };
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CompositeTarget {
     /// Format of the colour attachment; radiance is linear, so a float format keeps it whole.
@@ -33,6 +44,13 @@ impl Default for CompositeTarget {
 }
 
 /// What the surface reflects before light enters.
+///
+/// ```
+/// use translume::Gloss;
+///
+/// let wax = Gloss::Rough(0.35);
+/// assert_eq!(Gloss::default(), Gloss::None);
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub enum Gloss {
@@ -45,6 +63,21 @@ pub enum Gloss {
 }
 
 /// Draws bodies into one kind of target.
+///
+/// ```no_run
+/// # fn example(device: &translume::wgpu::Device, queue: &translume::wgpu::Queue, translume: &translume::Translume,
+/// #     body: &translume::Body, camera: &translume::Camera, pass: &mut translume::wgpu::RenderPass<'_>) {
+/// use translume::{CompositeTarget, Gloss};
+///
+/// // once
+/// let composite = translume.composite(device, CompositeTarget::default());
+/// let mut view = composite.view(device, body);
+/// // each frame, after `Body::prepare` and before the pass
+/// view.prepare(device, queue, body, camera, Gloss::Rough(0.35));
+/// // in the pass
+/// composite.draw(pass, &view);
+/// # }
+/// ```
 pub struct Composite {
     device: wgpu::Device,
     layout: wgpu::BindGroupLayout,
@@ -70,6 +103,13 @@ struct Kind {
 }
 
 /// One body seen by one camera.
+///
+/// ```no_run
+/// # fn example(device: &translume::wgpu::Device, composite: &translume::Composite, body: &translume::Body) {
+/// // Two cameras, two views of one body.
+/// let [left, right] = [composite.view(device, body), composite.view(device, body)];
+/// # }
+/// ```
 pub struct CompositeView {
     uniform: wgpu::Buffer,
     layout: wgpu::BindGroupLayout,
@@ -140,7 +180,7 @@ impl Composite {
         let uniform = gpu::uniform_buffer(device, "composite", size_of::<CompositeLayout>() as u64);
         CompositeView {
             group: bind(device, &self.layout, &uniform, body),
-            depth_maps: body.depth_maps.texture.clone(),
+            depth_maps: body.seen_depth().texture.clone(),
             layout: self.layout.clone(),
             uniform,
             vertices: body.buffers.atlas_vertices.clone(),
@@ -182,9 +222,9 @@ impl CompositeView {
         camera: &Camera,
         gloss: Gloss,
     ) {
-        if self.depth_maps != body.depth_maps.texture {
+        if self.depth_maps != body.seen_depth().texture {
             self.group = bind(device, &self.layout, &self.uniform, body);
-            self.depth_maps = body.depth_maps.texture.clone();
+            self.depth_maps = body.seen_depth().texture.clone();
         }
         self.points = body.points().map(|points| points.drawn().clone());
         self.kind = match body.points() {
@@ -219,7 +259,7 @@ fn bind(
         uniform.as_entire_binding(),
         wgpu::BindingResource::TextureView(body.exitance_view()),
         body.buffers.gather_uniform.as_entire_binding(),
-        wgpu::BindingResource::TextureView(&body.depth_maps.sampled),
+        wgpu::BindingResource::TextureView(&body.seen_depth().sampled),
     ];
     gpu::bind(device, "composite", layout, &resources)
 }
@@ -260,19 +300,6 @@ fn pipeline(
         constants.push(("FLAT_NORMALS", f64::from(u8::from(flat))));
         constants.extend(medium.iter().flat_map(|medium| medium.constants()));
     }
-    let vertex = wgpu::VertexBufferLayout {
-        array_stride: size_of::<AtlasVertexLayout>() as u64,
-        step_mode: wgpu::VertexStepMode::Vertex,
-        attributes: &wgpu::vertex_attr_array![0 => Uint32, 1 => Float32x2],
-    };
-    let corner = wgpu::VertexBufferLayout {
-        array_stride: 32,
-        step_mode: wgpu::VertexStepMode::Vertex,
-        attributes: &[
-            wgpu::VertexAttribute { format: wgpu::VertexFormat::Float32x3, offset: 0, shader_location: 2 },
-            wgpu::VertexAttribute { format: wgpu::VertexFormat::Float32x3, offset: 16, shader_location: 3 },
-        ],
-    };
     device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: Some("composite"),
         layout: Some(layout),
@@ -280,7 +307,7 @@ fn pipeline(
             module,
             entry_point: Some("vertex"),
             compilation_options: wgpu::PipelineCompilationOptions::default(),
-            buffers: &[Some(vertex), Some(corner)],
+            buffers: &Geometry::LAYOUTS.map(Some),
         },
         // Scans are open: their inside is drawn too, with the light of their outside.
         primitive: wgpu::PrimitiveState::default(),

@@ -60,7 +60,7 @@ impl Gather {
             buffers.texel_positions.as_entire_binding(),
             buffers.texel_normals.as_entire_binding(),
             buffers.irradiance.as_entire_binding(),
-            wgpu::BindingResource::TextureView(&depth_maps.sampled),
+            wgpu::BindingResource::TextureView(&depth_maps.layers.sampled),
         ];
         gpu::bind(device, "gather", &self.layout, &resources)
     }

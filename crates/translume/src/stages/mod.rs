@@ -9,7 +9,19 @@ pub(crate) mod scatter;
 pub(crate) mod shadow;
 pub(crate) mod visibility;
 
+use crate::kernel_texture::KernelTables;
+use crate::memory::Ledger;
+use crate::scratch::Scratch;
+use std::sync::Arc;
+
 /// A stage of a frame.
+///
+/// ```
+/// use translume::Stage;
+///
+/// let names: Vec<_> = Stage::ALL.iter().map(|stage| stage.name()).collect();
+/// assert_eq!(names, ["deform", "visibility", "shadow", "gather", "cluster", "scatter", "resolve"]);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(u8)]
 pub enum Stage {
@@ -57,6 +69,13 @@ impl Stage {
 }
 
 /// A set of stages.
+///
+/// ```
+/// use translume::{Stage, StageSet};
+///
+/// let lit = StageSet::from_stage_on(Stage::Gather);
+/// assert!(lit.contains(Stage::Scatter) && !lit.contains(Stage::Deform));
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct StageSet(u8);
 
@@ -105,7 +124,7 @@ impl StageSet {
     }
 }
 
-/// The pipelines of every stage that a frame records.
+/// The pipelines of every stage that a frame records, and what bodies share.
 pub(crate) struct Stages {
     pub deform: deform::Deform,
     pub visibility: visibility::Visibility,
@@ -114,10 +133,12 @@ pub(crate) struct Stages {
     pub cluster: cluster::ClusterStage,
     pub scatter: scatter::Scatter,
     pub resolve: resolve::Resolve,
+    pub scratch: Scratch,
+    pub kernel_tables: KernelTables,
 }
 
 impl Stages {
-    pub fn new(device: &wgpu::Device) -> Self {
+    pub fn new(device: &wgpu::Device, ledger: &Arc<Ledger>) -> Self {
         Self {
             deform: deform::Deform::new(device),
             visibility: visibility::Visibility::new(device),
@@ -126,6 +147,8 @@ impl Stages {
             cluster: cluster::ClusterStage::new(device),
             scatter: scatter::Scatter::new(device),
             resolve: resolve::Resolve::new(device),
+            scratch: Scratch::new(device, ledger),
+            kernel_tables: KernelTables::default(),
         }
     }
 }

@@ -9,22 +9,35 @@ use crate::shadow_view::View;
 use crate::stages::Stage;
 use crate::timings::Recording;
 use glam::Mat4;
+use std::sync::Arc;
 
 pub(crate) struct Shadow {
     layout: wgpu::BindGroupLayout,
     pipeline: wgpu::RenderPipeline,
 }
 
-/// Depth maps, and the uniforms they are drawn with.
-pub(crate) struct DepthMaps {
+/// Square layers of depth.
+pub(crate) struct DepthLayers {
     pub texture: wgpu::Texture,
     pub sampled: wgpu::TextureView,
     layers: Vec<wgpu::TextureView>,
+}
+
+/// Depth maps, and the uniforms they are drawn with.
+pub(crate) struct DepthMaps {
+    pub layers: Arc<DepthLayers>,
     uniforms: wgpu::Buffer,
     group: wgpu::BindGroup,
 }
 
 /// What the host has to know of a view to draw its casters into it.
+///
+/// ```no_run
+/// # fn example(device: &translume::wgpu::Device, queue: &translume::wgpu::Queue, body: &mut translume::Body) -> Result<(), translume::Error> {
+/// // Matrices for the host's casters, before `encode_with` draws them.
+/// let matrices: Vec<_> = body.shadow_views().map(|view| view.view_projection).collect();
+/// # Ok(()) }
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ShadowView {
     /// World space to clip space, column-major. Depth is reversed: 1 at the near plane, 0 at the far one, greater is nearer.
@@ -76,33 +89,11 @@ impl Shadow {
         Self { layout, pipeline }
     }
 
-    /// Room for `layers` square layers and the uniforms of `views`.
-    pub fn depth_maps(&self, device: &wgpu::Device, width: u32, layers: u32, views: u64) -> DepthMaps {
-        let texture = device.create_texture(&wgpu::TextureDescriptor {
-            label: Some("depth maps"),
-            size: wgpu::Extent3d { width, height: width, depth_or_array_layers: layers },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format: Self::FORMAT,
-            usage: wgpu::TextureUsages::RENDER_ATTACHMENT
-                | wgpu::TextureUsages::TEXTURE_BINDING
-                | wgpu::TextureUsages::COPY_SRC,
-            view_formats: &[],
-        });
-        let view = |dimension, base_array_layer, array_layer_count| {
-            texture.create_view(&wgpu::TextureViewDescriptor {
-                dimension: Some(dimension),
-                base_array_layer,
-                array_layer_count: Some(array_layer_count),
-                ..Default::default()
-            })
-        };
-        let sampled = view(wgpu::TextureViewDimension::D2Array, 0, layers);
-        let layers = (0..layers).map(|layer| view(wgpu::TextureViewDimension::D2, layer, 1)).collect();
+    /// These layers, and room for the uniforms of `views`.
+    pub fn depth_maps(&self, device: &wgpu::Device, layers: Arc<DepthLayers>, views: u64) -> DepthMaps {
         let uniforms = gpu::uniform_buffer(device, "shadow views", UNIFORM_STRIDE * views);
         let group = gpu::bind(device, "shadow", &self.layout, &[gpu::uniform_slot::<Mat4>(&uniforms)]);
-        DepthMaps { texture, sampled, layers, uniforms, group }
+        DepthMaps { layers, uniforms, group }
     }
 
     /// Draws the views, whose uniforms begin at slot `first`, for a stage: a pass for each layer, a draw for each view.
@@ -115,7 +106,7 @@ impl Shadow {
         (buffers, indices): (&Buffers, u32),
         casters: DrawCasters<'_>,
     ) {
-        for (number, layer) in (0..).zip(&maps.layers) {
+        for (number, layer) in (0..).zip(&maps.layers.layers) {
             let mut here = (first..).zip(views).filter(|(_, view)| view.tile.layer == number).peekable();
             if here.peek().is_none() {
                 continue;
@@ -150,10 +141,52 @@ impl Shadow {
     }
 }
 
-impl DepthMaps {
+impl DepthLayers {
+    pub fn new(device: &wgpu::Device, width: u32, layers: u32) -> Self {
+        let texture = device.create_texture(&wgpu::TextureDescriptor {
+            label: Some("depth maps"),
+            size: wgpu::Extent3d { width, height: width, depth_or_array_layers: layers },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: Shadow::FORMAT,
+            usage: wgpu::TextureUsages::RENDER_ATTACHMENT
+                | wgpu::TextureUsages::TEXTURE_BINDING
+                | wgpu::TextureUsages::COPY_SRC,
+            view_formats: &[],
+        });
+        let view = |dimension, base_array_layer, array_layer_count| {
+            texture.create_view(&wgpu::TextureViewDescriptor {
+                dimension: Some(dimension),
+                base_array_layer,
+                array_layer_count: Some(array_layer_count),
+                ..Default::default()
+            })
+        };
+        let sampled = view(wgpu::TextureViewDimension::D2Array, 0, layers);
+        let layers = (0..layers).map(|layer| view(wgpu::TextureViewDimension::D2, layer, 1)).collect();
+        Self { texture, sampled, layers }
+    }
+
     /// Whether there are at least this many layers of this width.
     pub fn fit(&self, width: u32, layers: u32) -> bool {
         self.texture.width() == width && self.texture.depth_or_array_layers() >= layers
+    }
+
+    pub fn bytes(&self) -> u64 {
+        depth_bytes(self.texture.width(), self.texture.depth_or_array_layers())
+    }
+}
+
+/// Of layers of this width.
+pub(crate) fn depth_bytes(width: u32, layers: u32) -> u64 {
+    4 * u64::from(width).pow(2) * u64::from(layers)
+}
+
+impl DepthMaps {
+    /// Apart from the layers.
+    pub fn bytes(&self) -> u64 {
+        self.uniforms.size()
     }
 
     pub fn write_views(&self, queue: &wgpu::Queue, views: &[View]) {

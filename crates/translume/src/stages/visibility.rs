@@ -11,9 +11,10 @@ use crate::gpu::{self, DEPTH_MAPS, Pass, READ, UNIFORM, UNIFORM_ARRAY, WRITE};
 use crate::layout::{DirectionLayout, DirectionsLayout};
 use crate::shadow_view::{Subject, Tile, View, sky_view};
 use crate::stages::Stage;
-use crate::stages::shadow::{DepthMaps, DrawCasters, Shadow};
+use crate::stages::shadow::{DepthLayers, DepthMaps, DrawCasters, Shadow};
 use crate::timings::Recording;
 use glam::{Vec3, Vec4};
+use std::sync::Arc;
 
 /// Directions that share a word of a texel.
 const PER_WORD: usize = 8;
@@ -87,26 +88,53 @@ impl SkyMemory {
         4 * u64::from(options.directions / PER_WORD as u32) * u64::from(texels)
     }
 
-    /// Makes room; says whether there was none.
+    /// Width of the one layer of depth that the directions take turns with.
+    pub fn width(options: &ShadowOptions) -> u32 {
+        SQUARES * options.direction_resolution
+    }
+
+    /// Bytes of its own, apart from the layers of depth.
+    pub fn bytes(&self) -> u64 {
+        self.memory.as_ref().map_or(0, |memory| memory.visible.size() + memory.uniforms.size())
+    }
+
+    /// The layer of depth, once there is one.
+    pub fn depth(&self) -> Option<&Arc<DepthLayers>> {
+        self.memory.as_ref().map(|memory| &memory.maps.layers)
+    }
+
+    /// Draws into another layer of depth from now on.
+    pub fn take_turns(
+        &mut self,
+        device: &wgpu::Device,
+        visibility: &Visibility,
+        buffers: &Buffers,
+        depth: Arc<DepthLayers>,
+    ) {
+        if let Some(memory) = self.memory.as_mut().filter(|memory| !Arc::ptr_eq(&memory.maps.layers, &depth))
+        {
+            memory.maps.layers = depth;
+            let Memory { visible, maps, uniforms, .. } = memory;
+            memory.group = visibility.bind(device, buffers, visible, maps, uniforms);
+        }
+    }
+
+    /// Makes room.
     pub fn allocate(
         &mut self,
         device: &wgpu::Device,
         (visibility, shadow): (&Visibility, &Shadow),
         buffers: &Buffers,
-        options: &ShadowOptions,
-        texels: u32,
-    ) -> bool {
-        if self.memory.is_some() {
-            return false;
-        }
+        (options, texels): (&ShadowOptions, u32),
+        depth: Arc<DepthLayers>,
+    ) {
         let visible = gpu::buffer(device, "visible sky", Self::size(options, texels));
         let views = self.directions.len() as u64;
-        let maps = shadow.depth_maps(device, SQUARES * options.direction_resolution, 1, views);
+        let maps = shadow.depth_maps(device, depth, views);
         let uniforms = gpu::uniform_buffer(device, "directions", STRIDE * views / PER_WORD as u64);
         let group = visibility.bind(device, buffers, &visible, &maps, &uniforms);
         self.memory = Some(Memory { visible, maps, uniforms, group });
         self.forget(false);
-        true
     }
 
     /// Chooses what the next frame renews and uploads its views. Says whether that is anything.
@@ -170,7 +198,7 @@ impl Visibility {
             buffers.positions.as_entire_binding(),
             buffers.normals.as_entire_binding(),
             visible.as_entire_binding(),
-            wgpu::BindingResource::TextureView(&maps.sampled),
+            wgpu::BindingResource::TextureView(&maps.layers.sampled),
             gpu::uniform_slot::<DirectionsLayout>(uniforms),
         ];
         gpu::bind(device, "visibility", &self.layout, &resources)

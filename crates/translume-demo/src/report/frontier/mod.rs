@@ -30,7 +30,7 @@ use stage::Stage;
 use std::path::Path;
 use std::time::Duration;
 use summary::Summary;
-use translume::Translume;
+use translume::{Config, Translume};
 use truth::{Patience, Truths};
 
 /// For pictures whose time is of no interest, or so long that nothing is left to warm up.
@@ -51,7 +51,7 @@ pub fn run(arguments: &Report) -> Result<(), Error> {
         sources.extend(scenes::own(arguments.quick));
     }
     let gpu = Gpu::new()?;
-    let translume = Translume::new(&gpu.device)?;
+    let translume = Translume::new(&gpu.device, &Config::default())?;
     let bar = progress::bar("report");
     bar.set_length(sources.len() as u64);
     let study = Study {

@@ -23,7 +23,7 @@ use indicatif::ProgressBar;
 use plan::Plan;
 use row::Row;
 use std::path::Path;
-use translume::Translume;
+use translume::{Config, Translume};
 
 /// What every part of the suite needs.
 struct Study<'a> {
@@ -38,7 +38,7 @@ pub fn run(arguments: &Report) -> Result<(), Error> {
     let gpu = Gpu::new()?;
     let plan = Plan::new(arguments);
     check_atlas(plan.largest(), &gpu)?;
-    let translume = Translume::new(&gpu.device)?;
+    let translume = Translume::new(&gpu.device, &Config::default())?;
     let bar = progress::bar("scatter");
     bar.set_length(plan.steps());
     let study = Study { gpu: &gpu, translume: &translume, plan: &plan, bar: &bar };

@@ -12,6 +12,7 @@ use crate::gpu::{
 };
 use crate::layout::{DualLayout, ScatterLayout};
 use crate::stages::cluster::Tree;
+use std::sync::Arc;
 
 /// The coarsest level of receivers has at least this many nodes: fewer would not share enough to be worth a dispatch.
 const LEAST_RECEIVERS: u32 = 64;
@@ -40,7 +41,7 @@ const _: () = assert!(size_of::<DualLayout>() as u64 <= UNIFORM_STRIDE);
 /// What the dual scatter of one body remembers during a frame.
 pub(crate) struct DualMemory {
     uniforms: wgpu::Buffer,
-    pub lists: wgpu::Buffer,
+    pub lists: Arc<Lists>,
     group: wgpu::BindGroup,
     start_level: u32,
     capacity: u32,
@@ -49,6 +50,62 @@ pub(crate) struct DualMemory {
     pub kind: MediumKind,
     /// Where exitance is evaluated at points.
     pub points: Option<PointMemory>,
+}
+
+/// What is written and read within the stage alone, unless exitance is evaluated at points.
+pub(crate) struct Lists {
+    expansions: wgpu::Buffer,
+    heads: wgpu::Buffer,
+    pub lists: wgpu::Buffer,
+}
+
+/// Bytes of each.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct ListSizes {
+    expansions: u64,
+    heads: u64,
+    lists: u64,
+}
+
+impl ListSizes {
+    pub fn new(tree: &Tree, demand: Demand, limits: &wgpu::Limits) -> Self {
+        Self {
+            expansions: expansions(tree, demand.evaluate),
+            heads: 4 * u64::from(tree.clusters()),
+            lists: LISTS_HEADER + 4 * u64::from(capacity(tree.counts[0], demand, limits)),
+        }
+    }
+
+    pub fn or_larger(self, other: Self) -> Self {
+        Self {
+            expansions: self.expansions.max(other.expansions),
+            heads: self.heads.max(other.heads),
+            lists: self.lists.max(other.lists),
+        }
+    }
+
+    pub fn bytes(self) -> u64 {
+        self.expansions + self.heads + self.lists
+    }
+}
+
+impl Lists {
+    pub fn new(device: &wgpu::Device, sizes: ListSizes) -> Self {
+        Self {
+            expansions: gpu::buffer(device, "expansions", sizes.expansions),
+            heads: gpu::buffer(device, "heads", sizes.heads),
+            lists: gpu::buffer(device, "lists", sizes.lists),
+        }
+    }
+
+    pub fn sizes(&self) -> ListSizes {
+        ListSizes { expansions: self.expansions.size(), heads: self.heads.size(), lists: self.lists.size() }
+    }
+
+    /// Whether they are so large or larger.
+    pub fn hold(&self, sizes: ListSizes) -> bool {
+        self.sizes() == self.sizes().or_larger(sizes)
+    }
 }
 
 /// What decides how much memory a body's dual scatter needs.
@@ -120,37 +177,33 @@ impl Dual {
         }
     }
 
-    /// Room for a body's lists and expansions.
+    /// Binds a body's lists and expansions.
     pub fn memory(
         &self,
         device: &wgpu::Device,
-        buffers: &Buffers,
-        kernel_table: &wgpu::TextureView,
-        tree: &Tree,
-        demand: Demand,
+        (buffers, kernel_table): (&Buffers, &wgpu::TextureView),
+        (tree, demand): (&Tree, Demand),
+        lists: Arc<Lists>,
     ) -> DualMemory {
         let start_level = start_level(tree);
         let capacity = capacity(tree.counts[0], demand, &device.limits());
         let uniforms = gpu::uniform_buffer(device, "dual", UNIFORM_STRIDE * u64::from(start_level + 1));
-        let expansions = gpu::buffer(device, "expansions", expansions(tree, demand.evaluate));
-        let heads = gpu::buffer(device, "heads", 4 * u64::from(tree.clusters()));
-        let lists = gpu::buffer(device, "lists", LISTS_HEADER + 4 * u64::from(capacity));
         let resources = [
             gpu::uniform_slot::<DualLayout>(&uniforms),
             buffers.bounds.as_entire_binding(),
             buffers.lamps.as_entire_binding(),
             buffers.exitance.as_entire_binding(),
-            expansions.as_entire_binding(),
-            heads.as_entire_binding(),
-            lists.as_entire_binding(),
+            lists.expansions.as_entire_binding(),
+            lists.heads.as_entire_binding(),
+            lists.lists.as_entire_binding(),
             wgpu::BindingResource::TextureView(kernel_table),
         ];
         let group = gpu::bind(device, "dual", &self.layout, &resources);
         let field = Field {
             uniforms: &uniforms,
-            expansions: &expansions,
-            heads: &heads,
-            lists: &lists,
+            expansions: &lists.expansions,
+            heads: &lists.heads,
+            lists: &lists.lists,
             kernel_table,
         };
         let points = self.points.memory(device, buffers, &field, demand.evaluate);
@@ -199,6 +252,11 @@ impl DualMemory {
     /// Whether it serves this demand too.
     pub fn serves(&self, demand: Demand, tree: &Tree, limits: &wgpu::Limits) -> bool {
         self.evaluate == demand.evaluate && self.capacity >= capacity(tree.counts[0], demand, limits)
+    }
+
+    /// Bytes, apart from the lists.
+    pub fn bytes(&self) -> u64 {
+        self.uniforms.size() + self.vertex_exitance().map_or(0, wgpu::Buffer::size)
     }
 
     pub fn vertex_exitance(&self) -> Option<&wgpu::Buffer> {

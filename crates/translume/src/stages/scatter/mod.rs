@@ -15,8 +15,17 @@ use crate::gpu::{
 use crate::kernel_table::KernelTableLayout;
 use crate::layout::{ScatterLayout, TermLayout};
 use crate::stages::cluster::Tree;
+use std::sync::OnceLock;
 
 /// How the sum over sources is evaluated.
+///
+/// ```
+/// use translume::Method;
+///
+/// // Half a percent of the mean.
+/// let method = Method::Within { tolerance: 0.005 };
+/// assert!(matches!(method.resolved(), Method::Dual { theta } if theta < 0.65));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Method {
@@ -97,6 +106,7 @@ pub(crate) struct Scatter {
     all_pairs: PerMedium,
     tree: PerMedium,
     pub dual: dual::Dual,
+    pub pattern: OnceLock<pattern::Pattern>,
 }
 
 impl Scatter {
@@ -109,6 +119,7 @@ impl Scatter {
             all_pairs: PerMedium::new(device, &pipelines, shaders, "all_pairs"),
             tree: PerMedium::new(device, &pipelines, shaders, "tree"),
             dual: dual::Dual::new(device),
+            pattern: OnceLock::new(),
             layout,
         }
     }

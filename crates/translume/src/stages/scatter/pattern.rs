@@ -65,23 +65,42 @@ impl Plan {
     }
 }
 
-/// Pipeline and bindings of one body; nobody compiles or keeps them who does not ask for the method.
-pub(crate) struct PatternMemory {
+/// Made by the first body that asks for the method.
+pub(crate) struct Pattern {
+    layout: wgpu::BindGroupLayout,
     collect: wgpu::ComputePipeline,
+}
+
+impl Pattern {
+    pub fn new(device: &wgpu::Device) -> Self {
+        let types = [UNIFORM, READ, READ, READ, READ, WRITE, FLOAT_TEXTURE, READ];
+        let layout = gpu::layout(device, "pattern", wgpu::ShaderStages::COMPUTE, &types);
+        let module = gpu::module(device, translume_shaders::PATTERN);
+        Self { collect: gpu::compute_pipeline(device, &layout, &module, "collect"), layout }
+    }
+
+    pub fn encode(&self, pass: &mut Pass<'_>, memory: &PatternMemory, texels: u32) {
+        pass.set_pipeline(&self.collect);
+        pass.set_bind_group(&memory.group, &[]);
+        pass.dispatch(texels);
+    }
+}
+
+/// What one body reads; nobody keeps it who does not ask for the method.
+pub(crate) struct PatternMemory {
     uniform: wgpu::Buffer,
+    pixels: wgpu::Buffer,
     group: wgpu::BindGroup,
 }
 
 impl PatternMemory {
     pub fn new(
         device: &wgpu::Device,
+        stage: &Pattern,
         buffers: &Buffers,
         kernel_table: &wgpu::TextureView,
         plan: &Plan,
     ) -> Self {
-        let types = [UNIFORM, READ, READ, READ, READ, WRITE, FLOAT_TEXTURE, READ];
-        let layout = gpu::layout(device, "pattern", wgpu::ShaderStages::COMPUTE, &types);
-        let module = gpu::module(device, translume_shaders::PATTERN);
         let uniform = gpu::uniform_buffer(device, "pattern", size_of::<PatternLayout>() as u64);
         let pixels =
             gpu::buffer_with(device, "texel pixels", wgpu::BufferUsages::STORAGE, plan.pixels.as_slice());
@@ -95,17 +114,15 @@ impl PatternMemory {
             wgpu::BindingResource::TextureView(kernel_table),
             buffers.marks.as_entire_binding(),
         ];
-        let group = gpu::bind(device, "pattern", &layout, &resources);
-        Self { collect: gpu::compute_pipeline(device, &layout, &module, "collect"), uniform, group }
+        let group = gpu::bind(device, "pattern", &stage.layout, &resources);
+        Self { uniform, pixels, group }
+    }
+
+    pub fn bytes(&self) -> u64 {
+        self.uniform.size() + self.pixels.size()
     }
 
     pub fn write(&self, queue: &wgpu::Queue, plan: &Plan, table: KernelTableLayout, medium: &Medium) {
         queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&plan.layout(table, medium)));
-    }
-
-    pub fn encode(&self, pass: &mut Pass<'_>, texels: u32) {
-        pass.set_pipeline(&self.collect);
-        pass.set_bind_group(&self.group, &[]);
-        pass.dispatch(texels);
     }
 }
