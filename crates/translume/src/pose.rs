@@ -9,7 +9,7 @@ use std::f32::consts::TAU;
 use translume_mesh::warp::{Axis, Warp};
 
 /// A weight for every morph target, a matrix for every joint, and the warp; or the host's vertices in place of all that.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Pose {
     pub weights: Vec<f32>,
     /// From the mesh at rest to model space, column-major.

@@ -29,7 +29,7 @@ impl Body {
         }
     }
 
-    fn choose(&self, view: Option<&View>, corners: &[Vec3; 8]) -> Evaluate {
+    pub(super) fn choose(&self, view: Option<&View>, corners: &[Vec3; 8]) -> Evaluate {
         if self.dual_theta().is_none() || self.profile.is_oriented() {
             return Evaluate::PerTexel;
         }

@@ -5,7 +5,7 @@ use crate::Error;
 use crate::evaluate::Evaluate;
 use crate::profile::{Profile, smooth_length};
 use crate::stages::cluster::Tree;
-use crate::stages::scatter::dual::{self, Demand, ListSizes, Lists};
+use crate::stages::scatter::dual::{self, Demand, DualMemory, ListSizes, Lists};
 use crate::stages::scatter::pattern::{Pattern, PatternMemory};
 use crate::stages::scatter::{Method, Scatter};
 use crate::stages::{Stage, StageSet};

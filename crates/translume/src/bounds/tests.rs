@@ -49,6 +49,7 @@ fn random_pose(dice: &mut Dice, skinned: bool) -> Pose {
         weights: (0..2).map(|_| 1.5 * dice.roll()).collect(),
         joints: if skinned { vec![joint(dice), joint(dice)] } else { Vec::new() },
         warp: Warp { twist: angle(dice), bend: angle(dice), inflate: 0.3 * dice.roll(), axis: None },
+        adopted: None,
     }
 }
 
@@ -114,7 +115,7 @@ fn a_pose_that_is_a_box_has_a_tight_one() {
     let mesh = cloud(&mut dice);
     let bounds = PoseBounds::new(&mesh);
     let turned = Mat4::from_rotation_z(FRAC_PI_2).to_cols_array_2d();
-    let rest = Pose { weights: vec![0.0; 2], joints: vec![turned; 2], warp: Warp::default() };
+    let rest = Pose { weights: vec![0.0; 2], joints: vec![turned; 2], ..Pose::default() };
     let target = Pose { weights: vec![0.0, 1.0], ..rest.clone() };
     for pose in [rest, target] {
         let (expected, actual) = (bounds.posed(&pose), true_bounds(&mesh, &pose));
@@ -130,8 +131,8 @@ fn inflation_grows_the_box() {
     let bounds = PoseBounds::new(&mesh);
     let pose = |inflate| Pose {
         weights: vec![0.0; 2],
-        joints: Vec::new(),
         warp: Warp { inflate, ..Warp::default() },
+        ..Pose::default()
     };
     for inflate in [0.5, -0.5] {
         let actual = true_bounds(&mesh, &pose(inflate));
@@ -150,7 +151,7 @@ fn many_small_targets_add_up_to_little() {
         ..Default::default()
     };
     let mesh = Mesh { positions, targets: (1..9).map(target).collect(), ..Mesh::default() };
-    let pose = Pose { weights: vec![0.5; 8], joints: Vec::new(), warp: Warp::default() };
+    let pose = Pose { weights: vec![0.5; 8], ..Pose::default() };
     assert_eq!(
         PoseBounds::new(&mesh).posed(&pose),
         Bounds { low: Vec3::new(0.0, 0.0, 1.0), high: Vec3::new(8.0, 4.0, 1.0) }
