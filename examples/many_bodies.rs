@@ -29,14 +29,14 @@ struct Thing {
 fn main() -> Result<(), Box<dyn Error>> {
     let host = Host::new()?;
     let picture = Picture::new(&host, PIXELS);
-    let camera = camera([260.0, 190.0, 560.0], [0.0, 10.0, -20.0], picture.aspect());
+    let camera = camera([420.0, 560.0, 1000.0], [0.0, 20.0, 30.0], picture.aspect());
     let view = View { camera, pixels: PIXELS };
 
     // Once: one mesh with two atlases, a hundred things. A budget that does not suffice is an error of `create_body` or `prepare`.
     let translume = Translume::new(&host.device, &Config { memory: Some(BUDGET) })?;
-    let mesh = builtin::creature_with(1_500);
+    let mesh = builtin::creature_with(4_000);
     let atlas = |size| Atlas::build(&mesh, &AtlasOptions { size, ..Default::default() }, |_| true);
-    let atlases = [atlas(64)?, atlas(32)?];
+    let atlases = [atlas(96)?, atlas(48)?];
     let target = CompositeTarget {
         format: Picture::FORMAT,
         depth: Some((Picture::DEPTH, wgpu::CompareFunction::Less)),

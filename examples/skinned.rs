@@ -6,8 +6,8 @@
 
 use std::error::Error;
 use translume::{
-    AmbientLight, BodyDescriptor, CompositeTarget, Config, Deformation, Frame, Gloss, HostVertices, Light,
-    Lighting, Medium, PointLight, Region, Translume, VertexVectors, wgpu,
+    AmbientLight, BodyDescriptor, CompositeTarget, Config, Deformation, DirectionalLight, Frame, Gloss,
+    HostVertices, Light, Lighting, Medium, PointLight, Region, Translume, VertexVectors, wgpu,
 };
 use translume_examples::{Host, Picture, camera};
 use translume_mesh::{Atlas, AtlasOptions, Influence, Mesh, Skin, builtin, load, rig};
@@ -55,12 +55,13 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     let at = |x: f32, y: f32, z: f32| std::array::from_fn(|k| 0.5 * (low[k] + high[k]) + size * [x, y, z][k]);
     let lamp = PointLight {
-        position: at(-0.5, 0.7, -0.9),
-        intensity: [9.0, 8.0, 7.0].map(|x| x * size * size),
+        position: at(-0.6, 0.6, -0.9),
+        intensity: [6.0, 5.5, 5.0].map(|x| x * size * size),
         ..Default::default()
     };
-    let lights =
-        [Light::Point(lamp), Light::Ambient(AmbientLight { radiance: [0.25; 3], ..Default::default() })];
+    let sun = DirectionalLight { to_light: [0.9, 0.8, 0.4], irradiance: [2.2; 3], ..Default::default() };
+    let sky = AmbientLight { radiance: [0.06; 3], ..Default::default() };
+    let lights = [Light::Point(lamp), Light::Directional(sun), Light::Ambient(sky)];
     let frame = Frame {
         deformation: Deformation::Vertices(vertices),
         lighting: Lighting::Lights(&lights),
@@ -79,7 +80,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     let composite = translume.composite(&host.device, target);
     let mut view = composite.view(&host.device, &body);
-    let camera = camera(at(1.1, 0.25, 1.5), at(0.0, 0.0, 0.0), picture.aspect());
+    let camera = camera(at(1.2, 0.3, 1.9), at(0.0, 0.0, 0.0), picture.aspect());
     view.prepare(&host.device, &host.queue, &body, &camera, Gloss::Rough(0.4));
     composite.draw(&mut picture.pass(&mut encoder), &view);
     host.queue.submit([encoder.finish()]);

@@ -55,7 +55,7 @@ impl KernelTexture {
         diagonal: f32,
     ) -> KernelTableLayout {
         if !self.fits(diagonal) {
-            self.diagonal = 1.25 * diagonal.max(f32::MIN_POSITIVE);
+            self.diagonal = roomy(diagonal.max(f32::MIN_POSITIVE));
         }
         let fresh = KernelTableLayout::new(range(self.diagonal, self.relative_spread));
         // The same proportions at another scale may round to another cell.
@@ -119,6 +119,11 @@ impl KernelTables {
         made.push(newest);
         texels
     }
+}
+
+/// A tenth to half as much again, in steps of half octaves: bodies of about one size then share a table.
+fn roomy(diagonal: f32) -> f32 {
+    (0.5 * (2.0 * (1.1 * diagonal).log2()).ceil()).exp2()
 }
 
 fn range(diagonal: f32, relative_spread: f32) -> KernelRange {

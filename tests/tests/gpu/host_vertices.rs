@@ -15,8 +15,9 @@ const MODEL: Mat4 = Mat4::from_cols_array(&[
     0.9, 0.1, 0.0, 0.0, -0.1, 1.1, 0.2, 0.0, 0.0, -0.2, 1.0, 0.0, 3.0, -2.0, 1.0, 1.0,
 ]);
 
+/// Without a shadow, for depth maps reach as far as the host says and not as the library guesses: edges of shadows are drawn to another grid.
 fn sun() -> [Light; 1] {
-    [Light::Directional(DirectionalLight { to_light: [0.4, 0.8, -0.6], ..Default::default() })]
+    [Light::Directional(DirectionalLight { to_light: [0.4, 0.8, -0.6], shadow: false, ..Default::default() })]
 }
 
 /// Where the host keeps its vertices.
@@ -121,7 +122,7 @@ fn agree(fixture: &Fixture, expected: &Fixture) -> Check {
     // Roundings of 6e-8 in another order, as for poses against their twin.
     at_most("host vertices: positions", furthest(fixture.positions(), expected.positions()) / 150.0, 1e-6)?;
     at_most("host vertices: normals", furthest(fixture.normals(), expected.normals()), 2e-4)?;
-    // Depth maps and kernel table reach as far as the host says, not as the library guesses: shadows are drawn to another grid.
+    // The kernel table begins elsewhere, and the interpolation in each is right to 0.5 %.
     at_most("host vertices: exitance", relative_rmse(&fixture.exitance(), &expected.exitance()), 0.01)
 }
 

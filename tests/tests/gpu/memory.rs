@@ -25,7 +25,7 @@ fn descriptor<'a>(model: &'a Model, shares_scratch: bool) -> BodyDescriptor<'a> 
         mm_per_unit: 1.0,
         shares_scratch,
         profile: Profile::DipoleNormalised,
-        shadows: ShadowOptions { resolution: 128, direction_resolution: 32, ..Default::default() },
+        shadows: ShadowOptions { resolution: 256, direction_resolution: 32, ..Default::default() },
         ..BodyDescriptor::new(&model.mesh, &model.atlas)
     }
 }
@@ -102,9 +102,9 @@ fn memory_is_counted_and_given_back() {
     submit(|encoder| _ = body.encode(encoder));
     let lit_once = body.memory();
     assert_eq!(translume.memory(), lit_once.total());
-    // Two maps of 128² and one of (4·32)² for the sky; four bits for each texel and direction; lists of 32 words a texel.
+    // Two maps of 256² and one of (4·32)² for the sky; four bits for each texel and direction; lists of 32 words a texel.
     let texels = u64::from(body.texels());
-    assert!(lit_once.shadows >= created.shadows + 4 * 128 * 128 * 2 + 64 / 2 * texels, "{lit_once:?}");
+    assert!(lit_once.shadows >= created.shadows + 4 * 256 * 256 + 64 / 2 * texels, "{lit_once:?}");
     assert!(lit_once.scatter >= created.scatter + 4 * 32 * texels, "{lit_once:?}");
     assert_eq!((lit_once.mesh, lit_once.atlas), (created.mesh, created.atlas));
 
@@ -163,7 +163,7 @@ fn levels_follow_the_size_in_the_picture() {
         View { camera: shot.camera(), pixels: [256; 2] }
     };
     let texels = |levels: &mut Levels, view: &View| levels.pick(view).map(|body| body.texels());
-    let [near, far] = [view(300.0, [0.0; 3]), view(3000.0, [0.0; 3])];
+    let [near, far] = [view(300.0, [0.0; 3]), view(6000.0, [0.0; 3])];
     let [most, least] = [levels.bodies()[0].texels(), levels.bodies()[1].texels()];
     assert_eq!(texels(&mut levels, &near), Some(most));
     assert_eq!(texels(&mut levels, &far), Some(least));

@@ -5,6 +5,7 @@
 #![allow(clippy::print_stderr, reason = "measured figures, for `--nocapture`")]
 
 mod complaints;
+mod recording;
 
 use allocation_counter::measure;
 use complaints::Complaints;
@@ -87,6 +88,7 @@ fn bodies(host: &Host, translume: &Translume) -> Vec<Body> {
             shares_scratch: k % 2 == 0,
             shadows: ShadowOptions {
                 resolution: 32,
+                area_points: 4,
                 directions: 8,
                 directions_per_frame: 8,
                 direction_resolution: 16,
