@@ -150,7 +150,7 @@ fn paths(app: &mut App, ui: &mut egui::Ui) {
 }
 
 impl App {
-    fn judge(&mut self) {
+    pub(in crate::app) fn judge(&mut self) {
         if let Some(wish) = &self.ordered {
             self.judging =
                 Some(truth::judge(wish.scene.clone(), wish.loaded.clone(), &self.court, &self.events));
