@@ -36,7 +36,11 @@ impl Gpu {
                 .map_err(|error| Error::NoAdapter(error.to_string()))?,
         };
         let info = adapter.get_info();
-        let name = format!("{} ({}, {})", info.name, info.backend, info.driver_info);
+        // Browsers tell no more of it.
+        let name = match info.name.as_str() {
+            "" => "WebGPU of this browser".to_owned(),
+            name => format!("{name} ({}, {})", info.backend, info.driver_info),
+        };
         let descriptor = wgpu::DeviceDescriptor {
             label: Some("translume"),
             // For timings.

@@ -23,6 +23,7 @@ mod layout;
 mod oriented;
 mod pattern;
 mod profiles;
+mod readback;
 mod scatter;
 mod shadow;
 mod sky;

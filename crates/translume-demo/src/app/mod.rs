@@ -326,6 +326,8 @@ impl eframe::App for App {
 
     fn save(&mut self, storage: &mut dyn eframe::Storage) {
         let scene = self.loaded.as_ref().map(|_| self.scene.clone());
+        // What was handed to a page is gone with it.
+        let scene = scene.filter(|scene| !IN_BROWSER || scene.shape.file(Path::new("")).is_none());
         let (recent, playback, export) = (self.recent.clone(), self.playback, self.export);
         let memory = Memory { scene, recent, playback, export };
         eframe::set_value(storage, eframe::APP_KEY, &memory);

@@ -17,6 +17,8 @@ const PICTURE_MS: u32 = 50;
 /// Opens the window on the page's element `canvas`; what goes wrong is said in the element `words`.
 pub fn start() {
     console_error_panic_hook::set_once();
+    // A console that somebody else writes to already stays as it is.
+    let _ = eframe::WebLogger::init(log::LevelFilter::Info);
     let Some(document) = web_sys::window().and_then(|window| window.document()) else { return };
     let words = document.get_element_by_id("words");
     let canvas = document.get_element_by_id("canvas").and_then(|element| element.dyn_into().ok());
@@ -44,16 +46,16 @@ pub async fn next_picture() {
     TimeoutFuture::new(PICTURE_MS).await;
 }
 
-/// Takes files that were dropped onto the page and opens the last one: what it refers to is among the others.
+/// Takes files that were dropped onto the page and opens the scene among them, else the model: what it refers to is among the others.
 pub fn take(dropped: Vec<egui::DroppedFileHandle>, events: &Events) {
     let events = events.clone();
     spawn_local(async move {
-        let mut last = None;
+        let mut paths = Vec::new();
         for file in dropped {
             match file.bytes_async().await {
                 Ok(bytes) => {
                     files::hand_over(file.path().to_owned(), bytes);
-                    last = Some(file.path().to_owned());
+                    paths.push(file.path().to_owned());
                 }
                 Err(reason) => {
                     let file = file.path().display().to_string();
@@ -61,8 +63,18 @@ pub fn take(dropped: Vec<egui::DroppedFileHandle>, events: &Events) {
                 }
             }
         }
-        last.into_iter().for_each(|path| events.send(Event::Chosen(Choice::Open, path)));
+        let first = paths.into_iter().max_by_key(|path| rank(path));
+        first.into_iter().for_each(|path| events.send(Event::Chosen(Choice::Open, path)));
     });
+}
+
+fn rank(path: &Path) -> u8 {
+    let ending = path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
+    match ending.as_str() {
+        "json" => 2,
+        ending if MODELS.contains(&ending) => 1,
+        _ => 0,
+    }
 }
 
 /// Asks for a file, or names the one that is to be written.
