@@ -1,6 +1,7 @@
 //! A texture of albedo: what a body gives back of the light differs from place to place.
 
 use crate::error::Error;
+use crate::files;
 use crate::picture::linear;
 use image::{ImageFormat, ImageReader};
 use std::path::{Path, PathBuf};
@@ -24,8 +25,9 @@ impl Albedo {
             return Err(Error::Texture { path: PathBuf::from(&mesh.name), problem: problem.to_owned() });
         }
         let unreadable = |error| fail(format!("cannot be read: {error}"));
-        let reader =
-            ImageReader::open(path).map_err(unreadable)?.with_guessed_format().map_err(unreadable)?;
+        let reader = ImageReader::new(files::open(path).map_err(unreadable)?)
+            .with_guessed_format()
+            .map_err(unreadable)?;
         if !matches!(reader.format(), Some(ImageFormat::Png | ImageFormat::Jpeg)) {
             return Err(fail("is neither a PNG nor a JPEG; convert it to one of them".to_owned()));
         }

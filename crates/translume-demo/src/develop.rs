@@ -6,7 +6,7 @@
 use crate::error::Error;
 use crate::gpu::Gpu;
 use crate::picture::BACKDROP;
-use translume::{readback, wgpu};
+use translume::wgpu;
 
 /// The pipeline, and room for pictures as large as the last.
 pub struct Developer {
@@ -39,7 +39,7 @@ impl Developer {
     }
 
     /// RGBA of a picture, row by row from the top, of `side`² samples a pixel. Waits for the GPU.
-    pub fn develop(
+    pub async fn develop(
         &mut self,
         gpu: &Gpu,
         radiance: &wgpu::Texture,
@@ -75,7 +75,7 @@ impl Developer {
             pass.dispatch_workgroups(width.div_ceil(GROUP), height.div_ceil(GROUP), 1);
         }
         queue.submit([encoder.finish()]);
-        Ok(readback::buffer(device, queue, &bytes)?)
+        gpu.buffer(&bytes).await
     }
 
     fn room(&mut self, device: &wgpu::Device, size: u64) -> wgpu::Buffer {

@@ -64,5 +64,5 @@ fn develop(@builtin(global_invocation_id) id: vec3u) {
     }
     let mean = sum / f32(settings.samples * settings.samples);
     let bytes = vec3u(clamp(srgb(mean) * 255.0 + dither(pixel), vec3f(0.0), vec3f(255.0)));
-    picture[pixel.y * settings.size.x + pixel.x] = bytes.r | bytes.g << 8u | bytes.b << 16u | 255u << 24u;
+    picture[pixel.y * settings.size.x + pixel.x] = bytes.r | (bytes.g << 8u) | (bytes.b << 16u) | (255u << 24u);
 }

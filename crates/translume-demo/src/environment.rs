@@ -1,11 +1,11 @@
 //! Light from an equirectangular map in a file.
 
 use crate::error::Error;
+use crate::files;
 use glam::{Mat3, Vec3};
 use image::ImageDecoder as _;
 use serde::{Deserialize, Serialize};
-use std::fs::File;
-use std::io::{BufRead as _, BufReader};
+use std::io::{BufRead, Seek};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use translume::{EnvironmentLight, EnvironmentMap, Light};
@@ -153,8 +153,8 @@ fn read_hdr(path: &Path) -> Result<Pixels, String> {
     Ok((width, height, image.into_rgb32f().pixels().map(|pixel| pixel.0).collect()))
 }
 
-fn open(path: &Path) -> Result<BufReader<File>, String> {
-    File::open(path).map(BufReader::new).map_err(|error| format!("cannot be read: {error}"))
+fn open(path: &Path) -> Result<impl BufRead + Seek + Send, String> {
+    files::open(path).map_err(|error| format!("cannot be read: {error}"))
 }
 
 fn check_size(width: usize, height: usize) -> Result<(), String> {
@@ -167,6 +167,7 @@ fn check_size(width: usize, height: usize) -> Result<(), String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::fs::File;
 
     fn refused(name: &str, content: &[u8], words: &[&str]) {
         let directory = tempfile::tempdir().unwrap();

@@ -1,8 +1,8 @@
 //! An adapter and its device.
 
 use crate::error::Error;
-use std::time::Instant;
-use translume::wgpu;
+use translume::{readback, wgpu};
+use web_time::Instant;
 
 /// A device and the name of the adapter behind it.
 #[derive(Clone)]
@@ -16,19 +16,31 @@ pub struct Gpu {
 
 impl Gpu {
     /// The best adapter there is, with all its limits; `WGPU_ADAPTER_NAME` and `WGPU_BACKEND` have their say.
+    #[cfg(not(target_arch = "wasm32"))]
     pub fn new() -> Result<Self, Error> {
+        pollster::block_on(Self::open())
+    }
+
+    /// The same without blocking.
+    pub async fn open() -> Result<Self, Error> {
         let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle().with_env());
         let options = wgpu::RequestAdapterOptions {
             power_preference: wgpu::PowerPreference::HighPerformance,
             ..Default::default()
         };
-        let adapter = match pollster::block_on(wgpu::util::initialize_adapter_from_env(&instance, None)) {
+        let adapter = match wgpu::util::initialize_adapter_from_env(&instance, None).await {
             Ok(adapter) => adapter,
-            Err(_) => pollster::block_on(instance.request_adapter(&options))
+            Err(_) => instance
+                .request_adapter(&options)
+                .await
                 .map_err(|error| Error::NoAdapter(error.to_string()))?,
         };
         let info = adapter.get_info();
-        let name = format!("{} ({}, {})", info.name, info.backend, info.driver_info);
+        // Browsers tell no more of it.
+        let name = match info.name.as_str() {
+            "" => "WebGPU of this browser".to_owned(),
+            name => format!("{name} ({}, {})", info.backend, info.driver_info),
+        };
         let descriptor = wgpu::DeviceDescriptor {
             label: Some("translume"),
             // For timings.
@@ -36,10 +48,30 @@ impl Gpu {
             required_limits: adapter.limits(),
             ..Default::default()
         };
-        let (device, queue) = pollster::block_on(adapter.request_device(&descriptor))
+        let (device, queue) = adapter
+            .request_device(&descriptor)
+            .await
             .map_err(|error| Error::NoDevice { adapter: name.clone(), reason: error.to_string() })?;
         let is_software = info.device_type == wgpu::DeviceType::Cpu;
         Ok(Self { device, queue, adapter: name, is_software })
+    }
+
+    /// The content of a buffer. It is waited for, in a browser without blocking.
+    pub async fn buffer<T: bytemuck::Pod>(&self, source: &wgpu::Buffer) -> Result<Vec<T>, Error> {
+        #[cfg(not(target_arch = "wasm32"))]
+        let values = readback::buffer(&self.device, &self.queue, source);
+        #[cfg(target_arch = "wasm32")]
+        let values = readback::buffer_async(&self.device, &self.queue, source).await;
+        Ok(values?)
+    }
+
+    /// The texels of a texture, in the same way.
+    pub async fn texture<T: bytemuck::Pod>(&self, source: &wgpu::Texture) -> Result<Vec<T>, Error> {
+        #[cfg(not(target_arch = "wasm32"))]
+        let values = readback::texture(&self.device, &self.queue, source, 0);
+        #[cfg(target_arch = "wasm32")]
+        let values = readback::texture_async(&self.device, &self.queue, source, 0).await;
+        Ok(values?)
     }
 
     /// Runs commands; from submission to their end, ms.

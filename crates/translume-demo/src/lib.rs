@@ -1,4 +1,5 @@
 //! The program `translume`: look at translucent models in a window, render, inspect and measure them.
+#![cfg_attr(target_arch = "wasm32", allow(dead_code, reason = "a page has no command line"))]
 
 mod albedo;
 mod app;
@@ -7,6 +8,7 @@ mod cli;
 mod develop;
 mod environment;
 mod error;
+mod files;
 mod film;
 mod framing;
 mod gpu;
@@ -18,7 +20,9 @@ mod paint;
 mod picture;
 mod profile;
 mod progress;
+#[cfg(not(target_arch = "wasm32"))]
 mod render;
+#[cfg(not(target_arch = "wasm32"))]
 mod report;
 mod scene;
 mod setup;
@@ -26,12 +30,21 @@ mod studio;
 mod timings;
 mod trace;
 
-use clap::Parser as _;
 use std::process::ExitCode;
 
-/// The program, by its command line.
+/// The program as a page of a browser.
+#[cfg(target_arch = "wasm32")]
 #[must_use]
 pub fn main() -> ExitCode {
+    app::web::start();
+    ExitCode::SUCCESS
+}
+
+/// The program, by its command line.
+#[cfg(not(target_arch = "wasm32"))]
+#[must_use]
+pub fn main() -> ExitCode {
+    use clap::Parser as _;
     env_logger::Builder::from_env(env_logger::Env::default().default_filter_or("error")).init();
     let result = match cli::Arguments::parse().command {
         None => app::run(None),

@@ -120,8 +120,17 @@ pub fn open(name: &str) -> Result<Model, Error> {
 
 /// A mesh file.
 pub fn open_file(path: &Path, watch: Watch<'_>) -> Result<Model, Error> {
+    #[cfg(not(target_arch = "wasm32"))]
     let loaded = load::load_with_progress(path, watch)?;
+    #[cfg(target_arch = "wasm32")]
+    let loaded = load::load_bytes(path, handed_over(path)?, watch)?;
     Ok(Model::new(loaded.mesh, loaded.repairs, loaded.rig))
+}
+
+#[cfg(target_arch = "wasm32")]
+fn handed_over(path: &Path) -> Result<Vec<u8>, load::LoadError> {
+    let file = path.display().to_string();
+    crate::files::read(path).map_err(|error| load::LoadError::Read { file, reason: error.to_string() })
 }
 
 /// A mesh made here, through the same checks as one from a file.

@@ -3,7 +3,7 @@
 use crate::error::Error;
 use crate::gpu::Gpu;
 use std::collections::HashMap;
-use translume::{Body, readback};
+use translume::Body;
 use translume_mesh::Atlas;
 
 /// What is shown of each texel.
@@ -45,7 +45,7 @@ impl Overlay {
 }
 
 /// sRGB of every pixel of the atlas; `errors` of every texel where they are shown.
-pub fn colours(
+pub async fn colours(
     gpu: &Gpu,
     body: &Body,
     atlas: &Atlas,
@@ -53,15 +53,17 @@ pub fn colours(
     errors: &[f32],
 ) -> Result<Vec<[u8; 4]>, Error> {
     let outputs = body.outputs();
-    let read = |buffer| readback::buffer::<[f32; 4]>(&gpu.device, &gpu.queue, buffer);
+    let read = async |buffer| gpu.buffer::<[f32; 4]>(buffer).await;
     let texels: Vec<[f32; 3]> = match overlay {
         Overlay::None => Vec::new(),
-        Overlay::Position => positions(&read(outputs.texel_positions)?),
-        Overlay::Normal => rgb(&read(outputs.texel_normals)?).map(|n| n.map(|x| 0.5 + 0.5 * x)).collect(),
-        Overlay::Irradiance => exposed(&read(outputs.irradiance)?),
-        Overlay::Exitance => exposed(&read(outputs.exitance)?),
+        Overlay::Position => positions(&read(outputs.texel_positions).await?),
+        Overlay::Normal => {
+            rgb(&read(outputs.texel_normals).await?).map(|n| n.map(|x| 0.5 + 0.5 * x)).collect()
+        }
+        Overlay::Irradiance => exposed(&read(outputs.irradiance).await?),
+        Overlay::Exitance => exposed(&read(outputs.exitance).await?),
         Overlay::Charts => by_number(&charts(atlas)),
-        Overlay::Density => density(&read(outputs.texel_positions)?),
+        Overlay::Density => density(&read(outputs.texel_positions).await?),
         Overlay::Clusters => by_number(&(0..atlas.texels.len()).map(|k| k / CLUSTER).collect::<Vec<_>>()),
         Overlay::Error => errors.iter().map(|error| heat(error / MOST_ERROR)).collect(),
     };

@@ -2,6 +2,7 @@
 
 use crate::cli;
 use crate::error::Error;
+use crate::files;
 use crate::progress;
 use serde::{Deserialize, Serialize};
 use std::ops::ControlFlow;
@@ -33,7 +34,7 @@ pub fn open(name: &str, directory: &Path) -> Result<Profile, Error> {
     }
     let path = directory.join(name);
     let fail = |problem: String| Error::Table { path: path.clone(), problem };
-    let text = std::fs::read_to_string(&path).map_err(|error| fail(format!("cannot be read: {error}")))?;
+    let text = files::read_to_string(&path).map_err(|error| fail(format!("cannot be read: {error}")))?;
     let file: TableFile = serde_json::from_str(&text)
         .map_err(|error| fail(format!("is not a table: {error}; `translume profile` writes one")))?;
     let profile =

@@ -12,17 +12,12 @@ use crate::motion::Motion;
 use crate::picture::{Format, Output};
 use crate::progress;
 use crate::scene::{Round, Scene, SceneAnimation, SceneLight, Up};
-use crate::setup::{Opened, Substance, camera};
+use crate::setup::{ASSUMED_DIAGONAL_MM, DEFAULT_ROUGHNESS, Opened, Substance, camera};
 use crate::studio::Studio;
 use crate::timings::table;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 use translume::{Config, Frame, Lighting, Medium, Translume, View};
-
-/// Without units a model is taken to be as large as something held in a hand.
-pub const ASSUMED_DIAGONAL_MM: f32 = 100.0;
-/// Wax without a highlight looks dead.
-pub const DEFAULT_ROUGHNESS: f32 = 0.35;
 
 pub fn run(arguments: &Render) -> Result<(), Error> {
     let mut output = Output::new(&arguments.output)?;
@@ -80,7 +75,7 @@ pub fn run(arguments: &Render) -> Result<(), Error> {
             view: Some(View { camera, pixels: studio.pixels() }),
         };
         studio.draw(&frame, &camera, gloss)?;
-        frames.push(studio.picture(develop)?);
+        frames.push(pollster::block_on(studio.picture(develop))?);
         timings.extend(studio.body().timings());
         bar.inc(1);
     }

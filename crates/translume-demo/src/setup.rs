@@ -11,6 +11,10 @@ use translume_mesh::{Atlas, Mesh};
 
 /// Width of a picture whose scene has no camera.
 pub const DEFAULT_SIZE: u32 = 768;
+/// Without units a model is taken to be as large as something held in a hand.
+pub const ASSUMED_DIAGONAL_MM: f32 = 100.0;
+/// Wax without a highlight looks dead.
+pub const DEFAULT_ROUGHNESS: f32 = 0.35;
 /// From where a scene without a camera is seen: degrees to the right of the front and upwards.
 pub const VIEW: [f32; 2] = [14.0, 9.0];
 

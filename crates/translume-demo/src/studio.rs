@@ -5,9 +5,7 @@ use crate::error::Error;
 use crate::gpu::Gpu;
 use crate::picture::{Develop, Picture};
 use std::sync::Arc;
-use translume::{
-    Body, BodyDescriptor, Camera, Composite, CompositeView, Frame, Gloss, Translume, readback, wgpu,
-};
+use translume::{Body, BodyDescriptor, Camera, Composite, CompositeView, Frame, Gloss, Translume, wgpu};
 
 /// A body in front of a camera, off screen.
 pub struct Studio {
@@ -56,9 +54,8 @@ impl Studio {
     }
 
     /// What was drawn, as a picture.
-    pub fn picture(&self, develop: Develop) -> Result<Picture, Error> {
-        let Gpu { device, queue, .. } = &self.gpu;
-        let samples = readback::texture::<[f32; 4]>(device, queue, &self.canvas.colour, 0)?;
+    pub async fn picture(&self, develop: Develop) -> Result<Picture, Error> {
+        let samples = self.gpu.texture::<[f32; 4]>(&self.canvas.colour).await?;
         Ok(Picture::from_samples(&samples, self.canvas.colour.width(), self.samples, develop))
     }
 

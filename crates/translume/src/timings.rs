@@ -7,7 +7,8 @@
 use crate::Work;
 use crate::stages::{Stage, StageSet};
 use std::sync::{Arc, Mutex, PoisonError};
-use std::time::{Duration, Instant};
+use std::time::Duration;
+use web_time::Instant;
 
 const STAGES: usize = Stage::ALL.len();
 /// Recordings in flight that are timed: hosts keep two or three frames in flight.
@@ -273,7 +274,7 @@ impl<'a> Recording<'a> {
     pub fn begin(mut timer: Option<&'a mut Timer>) -> Self {
         let marks = timer.as_mut().and_then(|timer| timer.marks());
         let by_wall = timer.as_ref().is_some_and(|timer| timer.slots.is_empty());
-        Self { work: Work::default(), timer, marks, start: if by_wall { now() } else { None } }
+        Self { work: Work::default(), timer, marks, start: by_wall.then(Instant::now) }
     }
 
     pub fn compute_pass(
@@ -322,11 +323,6 @@ impl<'a> Recording<'a> {
         }
         self.work
     }
-}
-
-/// The browser's bare WebAssembly has no clock.
-fn now() -> Option<Instant> {
-    (!cfg!(all(target_family = "wasm", target_os = "unknown"))).then(Instant::now)
 }
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! Project chores: `cargo xtask demo | test | ci | bench | package`. Standard library only, so that it builds in seconds.
+//! Project chores: `cargo xtask demo | web | test | ci | bench | package`. Standard library only, so that it builds in seconds.
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "a command-line tool talks to its terminal")]
 
 mod ci;
@@ -8,6 +8,7 @@ mod install;
 mod package;
 mod process;
 mod test;
+mod web;
 
 use std::process::ExitCode;
 
@@ -19,11 +20,16 @@ struct Chore {
     run: fn(&[String]) -> Outcome,
 }
 
-const CHORES: [Chore; 6] = [
+const CHORES: [Chore; 7] = [
     Chore {
         name: "demo",
         summary: "render a still and an animation of a jade creature into out/",
         run: demo::run,
+    },
+    Chore {
+        name: "web",
+        summary: "build pages for a browser and serve them; --test compares a picture with a browser's",
+        run: web::run,
     },
     Chore {
         name: "test",

@@ -25,6 +25,7 @@ mod memory;
 mod oriented;
 mod pattern;
 mod profiles;
+mod readback;
 mod scatter;
 mod shadow;
 mod sky;

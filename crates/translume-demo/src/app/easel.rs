@@ -17,18 +17,18 @@ use crate::picture::Output;
 use crate::scene::{Scene, SceneLight};
 use crate::setup::{Substance, VIEW, camera, library_lights};
 use crate::studio::Studio;
+use async_channel::{Receiver, RecvError, TryRecvError};
 use eframe::egui;
 use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::sync::mpsc::{Receiver, RecvError, TryRecvError};
-use std::time::Instant;
-use translume::{Camera, Composite, Config, Frame, Light, Lighting, Translume, View, readback};
+use translume::{Camera, Composite, Config, Frame, Light, Lighting, Translume, View};
+use web_time::Instant;
 
 /// The seat of what is exported.
 const EXPORT: usize = 2;
 
-/// What the thread owns.
+/// What the worker owns.
 pub struct Easel {
     gpu: Gpu,
     translume: Translume,
@@ -66,24 +66,24 @@ impl Easel {
     }
 
     /// Works until the window is closed.
-    pub fn serve(mut self, inbox: &Receiver<Order>, events: &Events) {
+    pub async fn serve(mut self, inbox: &Receiver<Order>, events: &Events) {
         let mut exports = VecDeque::new();
-        while let Ok(orders) = orders(inbox, exports.is_empty()) {
+        while let Ok(orders) = orders(inbox, exports.is_empty()).await {
             let mut newest = None;
             for order in orders {
                 match order {
                     Order::Show(wish) => newest = Some(wish),
                     Order::Write(wish, output, path) => {
-                        events.send(Event::Written(self.write(&wish, &output).map(|()| path)));
+                        events.send(Event::Written(self.write(&wish, &output).await.map(|()| path)));
                     }
                     Order::Export(export) => exports.push_back(export),
                 }
             }
             if let Some(wish) = newest {
-                events.send(Event::Shown(self.show(&wish).map(Box::new)));
+                events.send(Event::Shown(self.show(&wish).await.map(Box::new)));
             }
             if let Some(export) = exports.pop_front() {
-                match self.export(export, events) {
+                match self.export(export, events).await {
                     Ok(Some(export)) => exports.push_front(export),
                     Ok(None) => {}
                     Err(error) => events.send(Event::Exported(Err(error))),
@@ -96,7 +96,11 @@ impl Easel {
     }
 
     /// Adds a frame; gives back what is not yet done.
-    fn export(&mut self, mut export: Box<Export>, events: &Events) -> Result<Option<Box<Export>>, Error> {
+    async fn export(
+        &mut self,
+        mut export: Box<Export>,
+        events: &Events,
+    ) -> Result<Option<Box<Export>>, Error> {
         if export.is_cancelled() {
             drop(export);
             events.send(Event::Exported(Ok(None)));
@@ -108,24 +112,24 @@ impl Easel {
         };
         self.draw(EXPORT, &wish, &wish.scene)?;
         if let Some(seat) = &self.seats[EXPORT] {
-            let done = export.add(&seat.studio.picture(export.develop())?)?;
+            let done = export.add(&seat.studio.picture(export.develop()).await?)?;
             events.send(Event::Exporting { done });
         }
         Ok(Some(export))
     }
 
-    fn show(&mut self, wish: &Wish) -> Result<Shown, Error> {
+    async fn show(&mut self, wish: &Wish) -> Result<Shown, Error> {
         let start = Instant::now();
         let camera = self.draw(0, wish, &wish.scene)?;
         let atlas = match wish.overlay {
             Overlay::None => None,
-            _ => Some(self.paint(wish, &camera)?),
+            _ => Some(self.paint(wish, &camera).await?),
         };
-        let image = self.develop(0, wish)?;
+        let image = self.develop(0, wish).await?;
         let took = start.elapsed();
         let (timings, counters) = match &self.seats[0] {
             Some(seat) if wish.samples > 1 => {
-                (seat.studio.body().timings(), Some(counters(&self.gpu, seat)?))
+                (seat.studio.body().timings(), Some(counters(&self.gpu, seat).await?))
             }
             Some(seat) => (seat.studio.body().timings(), None),
             None => (None, None),
@@ -134,7 +138,7 @@ impl Easel {
             Some(quality) => {
                 let scene = Scene { quality: quality.clone(), ..wish.scene.clone() };
                 self.draw(1, wish, &scene)?;
-                Some(self.develop(1, wish)?)
+                Some(self.develop(1, wish).await?)
             }
             None => {
                 self.seats[1] = None;
@@ -144,7 +148,7 @@ impl Easel {
         Ok(Shown { image, other, atlas, counters, timings, took })
     }
 
-    fn develop(&mut self, seat: usize, wish: &Wish) -> Result<egui::ColorImage, Error> {
+    async fn develop(&mut self, seat: usize, wish: &Wish) -> Result<egui::ColorImage, Error> {
         let size = wish.pixels.map(|pixels| pixels as usize);
         let Some(seat) = &self.seats[seat] else {
             return Ok(egui::ColorImage::filled(size, egui::Color32::BLACK));
@@ -152,25 +156,26 @@ impl Easel {
         let (drawn, samples) = seat.studio.drawn();
         // Colours that stand for numbers are not exposed.
         let exposure = if wish.overlay == Overlay::None { wish.scene.look.exposure } else { 0.0 };
-        let bytes = self.developer.develop(&self.gpu, drawn, samples, exposure)?;
+        let bytes = self.developer.develop(&self.gpu, drawn, samples, exposure).await?;
         Ok(egui::ColorImage::from_rgba_premultiplied(size, &bytes))
     }
 
-    fn write(&mut self, wish: &Wish, output: &Output) -> Result<(), Error> {
+    async fn write(&mut self, wish: &Wish, output: &Output) -> Result<(), Error> {
         self.draw(0, wish, &wish.scene)?;
         match &self.seats[0] {
             Some(seat) => {
-                output.write(&[seat.studio.picture(output.format.develop(wish.scene.look.exposure))?])
+                let develop = output.format.develop(wish.scene.look.exposure);
+                output.write(&[seat.studio.picture(develop).await?])
             }
             None => Ok(()),
         }
     }
 
     /// In the colours of the overlay, over what was drawn.
-    fn paint(&self, wish: &Wish, camera: &Camera) -> Result<egui::ColorImage, Error> {
+    async fn paint(&self, wish: &Wish, camera: &Camera) -> Result<egui::ColorImage, Error> {
         let Some(seat) = &self.seats[0] else { return Ok(egui::ColorImage::default()) };
         let (body, atlas) = (seat.studio.body(), &wish.loaded.atlas);
-        let colours = overlay::colours(&self.gpu, body, atlas, wish.overlay, &wish.errors)?;
+        let colours = overlay::colours(&self.gpu, body, atlas, wish.overlay, &wish.errors).await?;
         let view = (camera, seat.substance.mm_per_unit);
         let (canvas, outlines) = (seat.studio.canvas(), &seat.outlines);
         self.painter.paint(&self.gpu, canvas, (body, outlines), view, (atlas.size, &colours));
@@ -241,14 +246,14 @@ impl Easel {
 }
 
 /// Looks at every texel.
-fn counters(gpu: &Gpu, seat: &Seat) -> Result<Counters, Error> {
+async fn counters(gpu: &Gpu, seat: &Seat) -> Result<Counters, Error> {
     let texels = seat.loaded.atlas.texels.len();
     let outputs = seat.studio.body().outputs();
-    let exitance = readback::buffer::<[f32; 4]>(&gpu.device, &gpu.queue, outputs.exitance)?;
+    let exitance = gpu.buffer::<[f32; 4]>(outputs.exitance).await?;
     let evaluations = exitance.iter().map(|value| value[3]).sum::<f32>() / texels.max(1) as f32;
     let lists = match outputs.lists {
         Some(lists) => {
-            let words = readback::buffer::<u32>(&gpu.device, &gpu.queue, lists)?;
+            let words = gpu.buffer::<u32>(lists).await?;
             words.first_chunk::<2>().copied()
         }
         None => None,
@@ -267,12 +272,13 @@ impl Lit {
 }
 
 /// What has come, once something has if there is nothing else to do; fails where nothing can come any more.
-fn orders(inbox: &Receiver<Order>, is_idle: bool) -> Result<Vec<Order>, RecvError> {
+async fn orders(inbox: &Receiver<Order>, is_idle: bool) -> Result<Vec<Order>, RecvError> {
     let first = match inbox.try_recv() {
         Ok(order) => Some(order),
-        Err(TryRecvError::Disconnected) => return Err(RecvError),
-        Err(TryRecvError::Empty) if is_idle => Some(inbox.recv()?),
+        Err(TryRecvError::Closed) => return Err(RecvError),
+        Err(TryRecvError::Empty) if is_idle => Some(inbox.recv().await?),
         Err(TryRecvError::Empty) => None,
     };
-    Ok(first.into_iter().chain(inbox.try_iter()).collect())
+    let others = std::iter::from_fn(|| inbox.try_recv().ok());
+    Ok(first.into_iter().chain(others).collect())
 }

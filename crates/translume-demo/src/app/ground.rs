@@ -1,6 +1,7 @@
 //! The model's surface under the mouse, for lights that are put onto it.
 
 use super::loaded::Loaded;
+use super::task::Task;
 use crate::error::Error;
 use crate::motion::{Motion, Wish};
 use crate::scene::{Scene, SceneLight};
@@ -74,7 +75,7 @@ type Key = (u64, Wish);
 #[derive(Default)]
 pub struct Grounds {
     ready: Option<(Key, Ground)>,
-    building: Option<(Key, Receiver<Ground>)>,
+    building: Option<(Key, Receiver<Ground>, Task)>,
 }
 
 impl Grounds {
@@ -86,7 +87,7 @@ impl Grounds {
         if !is_there && self.building.is_none() {
             let (sender, receiver) = channel();
             let (wish, opened, context) = (key.1.clone(), Arc::clone(&loaded.opened), context.clone());
-            std::thread::spawn(move || {
+            let task = Task::start(async move |_, _| {
                 // What cannot be posed cannot be drawn either, and the picture says why.
                 if let Ok(ground) = Ground::new(&wish, &opened) {
                     // Nobody may wait for it any more.
@@ -94,17 +95,17 @@ impl Grounds {
                     context.request_repaint();
                 }
             });
-            self.building = Some((key, receiver));
+            self.building = Some((key, receiver, task));
         }
         let (_, ground) = self.ready.as_ref().filter(|((id, _), _)| *id == loaded.id)?;
         Some(ground)
     }
 
     fn take(&mut self) {
-        let Some((key, receiver)) = self.building.take() else { return };
+        let Some((key, receiver, task)) = self.building.take() else { return };
         match receiver.try_recv() {
             Ok(ground) => self.ready = Some((key, ground)),
-            Err(TryRecvError::Empty) => self.building = Some((key, receiver)),
+            Err(TryRecvError::Empty) => self.building = Some((key, receiver, task)),
             Err(TryRecvError::Disconnected) => {}
         }
     }

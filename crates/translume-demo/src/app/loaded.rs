@@ -4,9 +4,8 @@ use super::events::{Event, Events};
 use super::task::Task;
 use crate::error::Error;
 use crate::model::Watch;
-use crate::render::{ASSUMED_DIAGONAL_MM, DEFAULT_ROUGHNESS};
 use crate::scene::{Quality, Round, Scene, SceneLight, Shape, Up};
-use crate::setup::{Opened, VIEW, camera};
+use crate::setup::{ASSUMED_DIAGONAL_MM, DEFAULT_ROUGHNESS, Opened, VIEW, camera};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
 use std::sync::{Arc, Mutex};
@@ -81,7 +80,7 @@ impl Job {
             .filter(|known| known.mesh == MeshKey::of(&wanted.scene))
             .map(|known| Arc::clone(&known.opened));
         let events = events.clone();
-        let task = Task::start(move |number, cancelled| {
+        let task = Task::start(async move |number, cancelled| {
             let last = Mutex::new("");
             let watch = |Progress { stage, done, total }| {
                 // Everything in one stage's first hearing, and about a hundred times more.

@@ -18,8 +18,11 @@ mod task;
 mod tests;
 mod truth;
 mod viewport;
+#[cfg(target_arch = "wasm32")]
+pub mod web;
 mod worker;
 
+#[cfg(not(target_arch = "wasm32"))]
 use crate::error::Error;
 use crate::overlay::Overlay;
 use crate::scene::{Quality, Scene};
@@ -39,6 +42,8 @@ use worker::{Adapter, Counters, Wish, Worker};
 
 /// What is shown first.
 const FIRST: &str = "creature";
+/// Whether the window is a page: it has one thread and no disk.
+const IN_BROWSER: bool = cfg!(target_arch = "wasm32");
 /// What was done that is remembered.
 const NOTICES: usize = 8;
 /// Files that are remembered.
@@ -115,6 +120,7 @@ pub struct App {
 }
 
 /// Opens the window, on a model or a scene if one is named, and stays until it is closed.
+#[cfg(not(target_arch = "wasm32"))]
 pub fn run(name: Option<&str>) -> Result<(), Error> {
     let options = eframe::NativeOptions {
         viewport: egui::ViewportBuilder::default()
@@ -204,13 +210,12 @@ impl App {
         }
     }
 
-    /// What a model is computed with if nothing is said: a processor gets a quarter of the texels.
+    /// What a model is computed with if nothing is said: a processor gets a quarter of the texels, and so does a page, which unwraps on one.
     fn quality(&self) -> Quality {
-        match &self.adapter {
-            Some(Adapter { is_software: true, .. }) => {
-                Quality { atlas: 256, shadow: 1024, directions: 64, ..Quality::default() }
-            }
-            _ => Quality::default(),
+        if IN_BROWSER || self.adapter.as_ref().is_some_and(|adapter| adapter.is_software) {
+            Quality { atlas: 256, shadow: 1024, directions: 64, ..Quality::default() }
+        } else {
+            Quality::default()
         }
     }
 
@@ -278,12 +283,17 @@ impl App {
         if cfg!(test) {
             return;
         }
-        let events = self.events.clone();
-        std::thread::spawn(move || {
-            if let Some(path) = panels::dialogue(choice) {
-                events.send(Event::Chosen(choice, path));
-            }
-        });
+        #[cfg(target_arch = "wasm32")]
+        web::ask(choice, &self.events);
+        #[cfg(not(target_arch = "wasm32"))]
+        {
+            let events = self.events.clone();
+            std::thread::spawn(move || {
+                if let Some(path) = panels::dialogue(choice) {
+                    events.send(Event::Chosen(choice, path));
+                }
+            });
+        }
     }
 }
 
@@ -300,6 +310,11 @@ impl eframe::App for App {
         self.notices.drain(..self.notices.len().saturating_sub(NOTICES));
         panels::keys(self, &context);
         let dropped = context.input(|input| input.raw.dropped_files.clone());
+        #[cfg(target_arch = "wasm32")]
+        if !dropped.is_empty() {
+            web::take(dropped, &self.events);
+        }
+        #[cfg(not(target_arch = "wasm32"))]
         for path in dropped.iter().map(|file| file.path().to_owned()) {
             self.open(&path.to_string_lossy());
         }
@@ -311,6 +326,8 @@ impl eframe::App for App {
 
     fn save(&mut self, storage: &mut dyn eframe::Storage) {
         let scene = self.loaded.as_ref().map(|_| self.scene.clone());
+        // What was handed to a page is gone with it.
+        let scene = scene.filter(|scene| !IN_BROWSER || scene.shape.file(Path::new("")).is_none());
         let (recent, playback, export) = (self.recent.clone(), self.playback, self.export);
         let memory = Memory { scene, recent, playback, export };
         eframe::set_value(storage, eframe::APP_KEY, &memory);

@@ -1,7 +1,8 @@
-//! Work on a thread of its own, which ends when nobody wants it any more.
+//! Work beside the window, which ends when nobody wants it any more.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use translume::wgpu::WasmNotSend;
 
 /// Work that ends when it is dropped, as soon as it looks.
 pub struct Task {
@@ -11,15 +12,22 @@ pub struct Task {
 }
 
 impl Task {
-    /// The work hears its number, and is told to end by the flag.
-    pub fn start(work: impl FnOnce(u64, &AtomicBool) + Send + 'static) -> Self {
+    /// The work hears its number, and is told to end by the flag. It has a thread of its own; in a browser, which has one thread, the
+    /// window stands still except where the work waits for something.
+    pub fn start(work: impl AsyncFnOnce(u64, &AtomicBool) + WasmNotSend + 'static) -> Self {
         static NUMBER: AtomicU64 = AtomicU64::new(1);
         let task = Self {
             number: NUMBER.fetch_add(1, Ordering::Relaxed),
             cancelled: Arc::new(AtomicBool::new(false)),
         };
         let (number, cancelled) = (task.number, Arc::clone(&task.cancelled));
-        std::thread::spawn(move || work(number, &cancelled));
+        #[cfg(not(target_arch = "wasm32"))]
+        std::thread::spawn(move || pollster::block_on(work(number, &cancelled)));
+        #[cfg(target_arch = "wasm32")]
+        wasm_bindgen_futures::spawn_local(async move {
+            super::web::next_picture().await;
+            work(number, &cancelled).await;
+        });
         task
     }
 

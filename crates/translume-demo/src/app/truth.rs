@@ -12,14 +12,15 @@ use crate::picture::{Develop, Picture};
 use crate::scene::{Scene, SceneLight};
 use crate::setup::{Substance, library_lights};
 use crate::trace::{Limits, Subject, samples, trace};
+use async_lock::Mutex;
 use eframe::egui;
 use glam::Vec3;
 use std::f32::consts::PI;
 use std::path::Path;
+use std::sync::Arc;
 use std::sync::atomic::Ordering;
-use std::sync::{Arc, Mutex, PoisonError};
-use std::time::Instant;
-use translume::{Body, Config, Evaluate, Frame, Lighting, Method, Translume, readback, wgpu};
+use translume::{Body, Config, Evaluate, Frame, Lighting, Method, Translume, wgpu};
+use web_time::Instant;
 
 /// Pixels across a picture by paths.
 const WIDTH: u32 = 192;
@@ -58,7 +59,7 @@ pub type Court = Arc<Mutex<Option<(Gpu, Translume)>>>;
 /// Follows paths through a scene until little noise is left.
 pub fn follow(scene: Scene, loaded: Arc<Loaded>, events: &Events) -> Task {
     let events = events.clone();
-    Task::start(move |number, cancelled| {
+    Task::start(async move |number, cancelled| {
         let send = |result| events.send(Event::Traced(number, result));
         let start = Instant::now();
         let exposure = scene.look.exposure;
@@ -90,8 +91,8 @@ pub fn follow(scene: Scene, loaded: Arc<Loaded>, events: &Events) -> Task {
 /// Holds the scatter of a scene against all pairs, on a device of its own, as that may take minutes.
 pub fn judge(scene: Scene, loaded: Arc<Loaded>, court: &Court, events: &Events) -> Task {
     let (court, events) = (Arc::clone(court), events.clone());
-    Task::start(move |number, cancelled| {
-        let result = errors(&scene, &loaded, &court);
+    Task::start(async move |number, cancelled| {
+        let result = errors(&scene, &loaded, &court).await;
         if !cancelled.load(Ordering::Relaxed) {
             events.send(Event::Judged(number, result));
         }
@@ -122,11 +123,11 @@ fn with_extent(mut scene: Scene) -> Result<(Scene, bool), Error> {
     Ok((scene, any))
 }
 
-fn errors(scene: &Scene, loaded: &Loaded, court: &Court) -> Result<Judged, Error> {
+async fn errors(scene: &Scene, loaded: &Loaded, court: &Court) -> Result<Judged, Error> {
     let start = Instant::now();
-    let mut court = court.lock().unwrap_or_else(PoisonError::into_inner);
+    let mut court = court.lock().await;
     if court.is_none() {
-        let gpu = Gpu::new()?;
+        let gpu = Gpu::open().await?;
         let translume = Translume::new(&gpu.device, &Config::default())?;
         *court = Some((gpu, translume));
     }
@@ -144,14 +145,14 @@ fn errors(scene: &Scene, loaded: &Loaded, court: &Court) -> Result<Judged, Error
     };
     let substance = Substance::new(scene, Path::new(""))?;
     let exact = Substance { method: Method::AllPairs, evaluate: Evaluate::PerTexel, ..substance.clone() };
-    let exitance = |substance: &Substance| {
+    let exitance = async |substance: &Substance| {
         let descriptor = substance.descriptor(&opened.model.mesh, &loaded.atlas, opened.flat_normals);
         let mut body = translume.create_body(&gpu.device, &descriptor)?;
         let laid = (&opened.model.mesh, &loaded.atlas);
         albedo::apply(&mut body, &gpu.queue, scene.albedo.as_deref(), laid)?;
-        exitance(gpu, &mut body, &frame)
+        exitance(gpu, &mut body, &frame).await
     };
-    let errors = overlay::errors(&exitance(&substance)?, &exitance(&exact)?);
+    let errors = overlay::errors(&exitance(&substance).await?, &exitance(&exact).await?);
     let rms = (errors.iter().map(|error| error * error).sum::<f32>() / errors.len().max(1) as f32).sqrt();
     let mut sorted = errors.clone();
     sorted.sort_by(f32::total_cmp);
@@ -160,13 +161,13 @@ fn errors(scene: &Scene, loaded: &Loaded, court: &Court) -> Result<Judged, Error
     Ok(Judged { loaded: loaded.id, errors: Arc::new(errors), rms, most, seconds })
 }
 
-fn exitance(gpu: &Gpu, body: &mut Body, frame: &Frame<'_>) -> Result<Vec<[f32; 4]>, Error> {
+async fn exitance(gpu: &Gpu, body: &mut Body, frame: &Frame<'_>) -> Result<Vec<[f32; 4]>, Error> {
     let Gpu { device, queue, .. } = gpu;
     body.prepare(device, queue, frame)?;
     let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("judge") });
     body.encode(&mut encoder);
     queue.submit([encoder.finish()]);
-    Ok(readback::buffer(device, queue, body.outputs().exitance)?)
+    gpu.buffer(body.outputs().exitance).await
 }
 
 #[cfg(test)]

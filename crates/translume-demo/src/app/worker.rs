@@ -1,24 +1,20 @@
-//! The GPU's thread: takes orders for pictures, the newest first, and never keeps the window waiting.
+//! The GPU's thread: takes orders for pictures, the newest first, and never keeps the window waiting. In a browser, which has one thread,
+//! it gives way to the window whenever it waits for the GPU.
 
 use super::easel::Easel;
 use super::events::{Event, Events};
 use super::export::Export;
 use super::loaded::Loaded;
-use crate::error::Error;
 use crate::gpu::Gpu;
 use crate::overlay::Overlay;
 use crate::picture::Output;
 use crate::scene::{Quality, Scene};
+use async_channel::{Receiver, Sender, unbounded};
 use eframe::egui;
 use std::path::PathBuf;
 use std::sync::Arc;
-use std::sync::mpsc::{Sender, channel};
-use std::thread::JoinHandle;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 use translume::FrameTimings;
-
-/// What a window that closes waits for at most.
-const PATIENCE: Duration = Duration::from_secs(5);
 
 /// What the window wants.
 pub enum Order {
@@ -82,43 +78,57 @@ pub struct Adapter {
 
 /// The window's end of the thread.
 pub struct Worker {
-    orders: Option<Sender<Order>>,
-    thread: JoinHandle<()>,
+    orders: Sender<Order>,
+    #[cfg(not(target_arch = "wasm32"))]
+    thread: std::thread::JoinHandle<()>,
 }
 
 impl Worker {
     pub fn start(events: &Events) -> Self {
-        let (orders, inbox) = channel();
+        let (orders, inbox) = unbounded();
         let events = events.clone();
+        #[cfg(not(target_arch = "wasm32"))]
         let thread = std::thread::spawn(move || {
             let _last_words = LastWords(events.clone());
-            let easel = Gpu::new().and_then(|gpu| {
-                let Gpu { adapter, is_software, .. } = &gpu;
-                let adapter = Adapter { name: adapter.clone(), is_software: *is_software };
-                events.send(Event::Ready(Ok(adapter)));
-                Easel::new(gpu)
-            });
-            match easel {
-                Ok(easel) => easel.serve(&inbox, &events),
-                Err(error) => events.send(Event::Ready(Err(error))),
-            }
+            pollster::block_on(work(&inbox, &events));
         });
-        Self { orders: Some(orders), thread }
+        #[cfg(target_arch = "wasm32")]
+        wasm_bindgen_futures::spawn_local(async move { work(&inbox, &events).await });
+        Self {
+            orders,
+            #[cfg(not(target_arch = "wasm32"))]
+            thread,
+        }
     }
 
     pub fn order(&self, order: Order) {
         // A worker that has ended has told why.
-        if let Some(orders) = &self.orders {
-            let _ = orders.send(order);
-        }
+        let _ = self.orders.try_send(order);
+    }
+}
+
+/// Until the window is closed.
+async fn work(inbox: &Receiver<Order>, events: &Events) {
+    let easel = Gpu::open().await.and_then(|gpu| {
+        let Gpu { adapter, is_software, .. } = &gpu;
+        let adapter = Adapter { name: adapter.clone(), is_software: *is_software };
+        events.send(Event::Ready(Ok(adapter)));
+        Easel::new(gpu)
+    });
+    match easel {
+        Ok(easel) => easel.serve(inbox, events).await,
+        Err(error) => events.send(Event::Ready(Err(error))),
     }
 }
 
 /// Waits for the picture at hand: a driver that is unloaded while it draws takes the program down. All pairs are not waited for.
+#[cfg(not(target_arch = "wasm32"))]
 impl Drop for Worker {
     fn drop(&mut self) {
-        self.orders = None;
-        let start = Instant::now();
+        /// What a window that closes waits for at most.
+        const PATIENCE: Duration = Duration::from_secs(5);
+        self.orders.close();
+        let start = std::time::Instant::now();
         while !self.thread.is_finished() && start.elapsed() < PATIENCE {
             std::thread::sleep(Duration::from_millis(5));
         }
@@ -126,12 +136,14 @@ impl Drop for Worker {
 }
 
 /// Tells of a thread that ends before its time: wgpu panics where a driver is reset, say.
+#[cfg(not(target_arch = "wasm32"))]
 struct LastWords(Events);
 
+#[cfg(not(target_arch = "wasm32"))]
 impl Drop for LastWords {
     fn drop(&mut self) {
         if std::thread::panicking() {
-            self.0.send(Event::Ready(Err(Error::Worker)));
+            self.0.send(Event::Ready(Err(crate::error::Error::Worker)));
         }
     }
 }

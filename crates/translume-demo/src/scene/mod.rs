@@ -7,6 +7,7 @@ pub use lights::SceneLight;
 pub use quality::{Look, Quality, THETA, TOLERANCE};
 
 use crate::error::Error;
+use crate::files;
 use crate::model;
 use crate::motion::Wish;
 use serde::{Deserialize, Serialize};
@@ -196,7 +197,7 @@ impl Scene {
     /// Reads a scene file.
     pub fn read(path: &Path) -> Result<Self, Error> {
         let fail = |problem: String| Error::Scene { path: path.to_owned(), problem };
-        let text = std::fs::read_to_string(path).map_err(|error| fail(format!("cannot be read: {error}")))?;
+        let text = files::read_to_string(path).map_err(|error| fail(format!("cannot be read: {error}")))?;
         Self::parse(&text, path)
     }
 

@@ -10,8 +10,9 @@ use crate::picture::{Format, Output, Picture};
 use crate::progress;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 use translume_reference::path::{Closed, Estimate, PathTracer, Shape};
+use web_time::Instant;
 
 /// Paths a pixel and channel that find out where further ones are needed; a pixel learns from its neighbours too.
 const PILOT: u32 = 8;

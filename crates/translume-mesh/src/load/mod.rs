@@ -198,14 +198,35 @@ pub fn load(path: &Path) -> Result<Loaded, LoadError> {
 /// # Errors
 /// [`LoadError::Cancelled`] when `progress` returned `false`, and those of [`load`].
 pub fn load_with_progress(path: &Path, progress: impl Fn(Progress) -> bool) -> Result<Loaded, LoadError> {
+    parse(path, &progress, |listener| listener.read(path))
+}
+
+/// [`load_with_progress`] of a file whose bytes are in memory, from an archive or a browser. `path` names it: its extension decides the
+/// format, and buffers of a glTF file that it does not hold itself are read from the disk beside it.
+///
+/// # Errors
+/// Those of [`load_with_progress`].
+pub fn load_bytes(
+    path: &Path,
+    bytes: Vec<u8>,
+    progress: impl Fn(Progress) -> bool,
+) -> Result<Loaded, LoadError> {
+    parse(path, &progress, |_| Ok(bytes))
+}
+
+fn parse(
+    path: &Path,
+    progress: &dyn Fn(Progress) -> bool,
+    bytes: impl FnOnce(&Listener<'_>) -> Result<Vec<u8>, LoadError>,
+) -> Result<Loaded, LoadError> {
     let extension = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase());
     let file = path.display().to_string();
-    let listener = Listener { file: &file, progress: &progress };
+    let listener = Listener { file: &file, progress };
     let bare = |mesh| Model { mesh, rig: None, material: None };
     let (model, metres_per_unit) = match extension.as_deref() {
-        Some("obj") => (bare(obj::read(listener.read(path)?, &listener)?), None),
-        Some("ply") => (bare(ply::read(&listener.read(path)?, &listener)?), None),
-        Some("gltf" | "glb") => (gltf::read(path, &listener.read(path)?)?, Some(1.0)),
+        Some("obj") => (bare(obj::read(bytes(&listener)?, &listener)?), None),
+        Some("ply") => (bare(ply::read(&bytes(&listener)?, &listener)?), None),
+        Some("gltf" | "glb") => (gltf::read(path, &bytes(&listener)?)?, Some(1.0)),
         _ => return Err(LoadError::UnknownExtension { file }),
     };
     listener.tell("repairing", 0, None)?;

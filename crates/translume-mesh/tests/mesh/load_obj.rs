@@ -1,6 +1,7 @@
 use std::cell::RefCell;
+use std::path::Path;
 
-use translume_mesh::load::{LoadError, Loaded, load, load_with_progress};
+use translume_mesh::load::{LoadError, Loaded, load, load_bytes, load_with_progress};
 use translume_mesh::{Mesh, Progress};
 
 use crate::fixtures::{Folder, area};
@@ -115,6 +116,17 @@ fn progress_is_told_in_order_and_can_cancel() {
         let error = load_with_progress(&path, |p| p.stage != stage).unwrap_err();
         assert_eq!(error, LoadError::Cancelled { file: path.display().to_string() });
     }
+}
+
+#[test]
+fn bytes_in_memory_are_read_as_a_file_is() {
+    let folder = Folder::new();
+    let path = folder.write("model.obj", TETRAHEDRON);
+    let of_bytes = |bytes: &str| load_bytes(&path, bytes.into(), |_| true).unwrap();
+    assert_eq!(of_bytes(TETRAHEDRON), load(&path).unwrap());
+    assert_ne!(of_bytes(&TETRAHEDRON.replacen('1', "2", 1)), load(&path).unwrap());
+    let error = load_bytes(Path::new("model.fbx"), Vec::new(), |_| true).unwrap_err();
+    assert_eq!(error, LoadError::UnknownExtension { file: "model.fbx".into() });
 }
 
 #[test]

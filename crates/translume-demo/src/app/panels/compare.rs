@@ -1,7 +1,7 @@
 //! How right the picture is: what lies behind it, and what lies beside it.
 
-use super::super::App;
 use super::super::truth;
+use super::super::{App, IN_BROWSER};
 use super::{choice, quality};
 use crate::overlay::{MOST_ERROR, Overlay, heat};
 use crate::scene::Quality;
@@ -114,6 +114,10 @@ pub fn beside(app: &mut App, ui: &mut egui::Ui) {
 }
 
 fn paths(app: &mut App, ui: &mut egui::Ui) {
+    if IN_BROWSER {
+        ui.weak("Paths would keep this page standing still for minutes: use the program.");
+        return;
+    }
     let refracts = app.scene.medium().ok().flatten().unwrap_or_default().ior != 1.0;
     if refracts
         && ui

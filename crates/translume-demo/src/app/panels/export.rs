@@ -1,13 +1,17 @@
 //! Films of what is played.
 
-use super::super::App;
 use super::super::export::Export;
 use super::super::worker::Order;
+use super::super::{App, IN_BROWSER};
 use eframe::egui;
 use egui::Slider;
 use std::path::Path;
 
 pub fn show(app: &mut App, ui: &mut egui::Ui) {
+    if IN_BROWSER {
+        ui.weak("A page writes no films: use the program.");
+        return;
+    }
     let settings = &mut app.export;
     ui.add(Slider::new(&mut settings.frames, 2..=600).text("frames of a round"));
     ui.add(Slider::new(&mut settings.rate, 1.0..=60.0).integer().text("frames a second"));

@@ -1,16 +1,17 @@
 //! The menu, and files.
 
-use super::super::App;
 use super::super::events::Choice;
 use super::super::worker::{Order, Wish};
+use super::super::{App, IN_BROWSER};
 use crate::overlay::Overlay;
 use crate::picture::Output;
 use eframe::egui;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 use translume_mesh::builtin;
 
-const MODELS: &[&str] = &["obj", "gltf", "glb", "ply"];
+/// Meshes.
+pub const MODELS: &[&str] = &["obj", "gltf", "glb", "ply"];
 /// Skies.
 pub const MAPS: &[&str] = &["exr", "hdr"];
 /// Albedo.
@@ -38,6 +39,30 @@ fn file(app: &mut App, ui: &mut egui::Ui) {
             }
         }
     });
+    if !IN_BROWSER {
+        recent(app, ui);
+    }
+    ui.separator();
+    if IN_BROWSER {
+        ui.weak("A page writes no pictures: use the program.");
+    } else {
+        pictures(app, ui);
+    }
+    if ui.button("Save scene…").clicked() {
+        app.ask(Choice::SaveScene);
+    }
+    if ui.button("Copy scene as JSON").clicked() {
+        copy(app, ui.ctx());
+    }
+    if !IN_BROWSER {
+        ui.separator();
+        if ui.button("Quit").clicked() {
+            ui.ctx().send_viewport_cmd(egui::ViewportCommand::Close);
+        }
+    }
+}
+
+fn recent(app: &mut App, ui: &mut egui::Ui) {
     ui.menu_button("Recent files", |ui| {
         if app.recent.is_empty() {
             ui.weak("none yet");
@@ -48,7 +73,9 @@ fn file(app: &mut App, ui: &mut egui::Ui) {
             }
         }
     });
-    ui.separator();
+}
+
+fn pictures(app: &mut App, ui: &mut egui::Ui) {
     if ui.button("Save picture…").clicked() {
         app.ask(Choice::SavePicture);
     }
@@ -60,16 +87,6 @@ fn file(app: &mut App, ui: &mut egui::Ui) {
             app.ask(Choice::SaveSequence);
         }
     });
-    if ui.button("Save scene…").clicked() {
-        app.ask(Choice::SaveScene);
-    }
-    if ui.button("Copy scene as JSON").clicked() {
-        copy(app, ui.ctx());
-    }
-    ui.separator();
-    if ui.button("Quit").clicked() {
-        ui.ctx().send_viewport_cmd(egui::ViewportCommand::Close);
-    }
 }
 
 fn edit(app: &mut App, ui: &mut egui::Ui) {
@@ -95,7 +112,8 @@ fn view(app: &mut App, ui: &mut egui::Ui) {
 }
 
 /// Asks where a file is; waits for the answer.
-pub fn dialogue(choice: Choice) -> Option<PathBuf> {
+#[cfg(not(target_arch = "wasm32"))]
+pub fn dialogue(choice: Choice) -> Option<std::path::PathBuf> {
     let dialogue = rfd::FileDialog::new();
     match choice {
         Choice::Open => {
@@ -139,6 +157,9 @@ pub fn copy(app: &mut App, context: &egui::Context) {
 
 fn save_scene(app: &mut App, path: &Path) {
     let Some(text) = json(app) else { return };
+    #[cfg(target_arch = "wasm32")]
+    super::super::web::give(path, text, &app.events);
+    #[cfg(not(target_arch = "wasm32"))]
     match std::fs::write(path, text) {
         Ok(()) => app.notices.push(format!("{} is written", path.display())),
         Err(error) => app.trouble(&format!("{}: cannot be written: {error}", path.display())),

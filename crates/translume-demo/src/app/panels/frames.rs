@@ -4,8 +4,8 @@ use super::super::worker::Shown;
 use eframe::egui;
 use egui_plot::{Corner, Legend, Line, Plot, PlotPoints};
 use std::collections::VecDeque;
-use std::time::Instant;
 use translume::{FrameTimings, Stage};
+use web_time::Instant;
 
 /// Pictures that are remembered.
 const KEPT: usize = 120;

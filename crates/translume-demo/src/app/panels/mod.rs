@@ -12,7 +12,11 @@ mod quality;
 mod status;
 
 pub use compare::Beside;
-pub use file::{MAPS, TEXTURES, chosen, dialogue};
+#[cfg(target_arch = "wasm32")]
+pub use file::MODELS;
+#[cfg(not(target_arch = "wasm32"))]
+pub use file::dialogue;
+pub use file::{MAPS, TEXTURES, chosen};
 pub use frames::Frames;
 pub use keys::keys;
 pub use light::light_from;

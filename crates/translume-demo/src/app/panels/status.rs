@@ -1,6 +1,6 @@
 //! The line at the bottom: who draws, how fast, and what went wrong.
 
-use super::super::App;
+use super::super::{App, IN_BROWSER};
 use eframe::egui;
 use egui::{ProgressBar, RichText};
 
@@ -12,7 +12,9 @@ pub fn show(app: &mut App, ui: &mut egui::Ui) {
         if let Some(job) = &app.job {
             let bar = ProgressBar::new(job.share.unwrap_or(0.0)).text(job.stage).desired_width(200.0);
             ui.add(bar.animate(job.share.is_none()));
-            if ui.button("Cancel").clicked() {
+            if IN_BROWSER {
+                ui.label("the page stands still meanwhile");
+            } else if ui.button("Cancel").clicked() {
                 app.job = None;
             }
         }
