@@ -10,7 +10,7 @@ use translume_mesh::{Atlas, AtlasOptions, builtin};
 
 /// Pixels along each side of the picture.
 pub const SIZE: u32 = 384;
-const TRIANGLES: usize = 5_000;
+const TRIANGLES: usize = 20_000;
 const ATLAS: u32 = 128;
 const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 
@@ -51,7 +51,7 @@ impl Lamp {
         let (sin, cos) = (TAU * self.turn).sin_cos();
         Light::Point(PointLight {
             position: [-90.0 * sin - 40.0 * cos, 120.0, 40.0 * sin - 90.0 * cos],
-            intensity: [2e4 * self.gain; 3],
+            intensity: [6e4 * self.gain; 3],
             ..Default::default()
         })
     }

@@ -9,8 +9,9 @@ use super::browser::{Browser, driver};
 use super::server::{Message, Server};
 use crate::process::{Failure, Outcome, cargo, run as run_command};
 
-/// How far pictures may be apart: root mean square over the mean. Both are drawn by the browser's software driver, and were 0.6 % apart, three
-/// quarters of it (in squares) one pixel at the outline. Other rasterisers have other outlines and edges of shadows: 15 %.
+/// How far pictures may be apart: root mean square over the mean. Both are drawn by the browser's software driver, and were less than 0.001 %
+/// apart, or 0.6 % where the mesh had ragged ears, most of it one pixel at the outline. Other rasterisers have other outlines and edges of
+/// shadows: 8 %.
 const TOLERANCE: f64 = 0.01;
 /// A lamp that is brighter by so much must be noticed.
 const BROKEN_GAIN: &str = "1.03";
