@@ -245,7 +245,7 @@ mod tests {
         let beside = cube().map(|corner| corner + Vec3::new(100.0, 0.0, 0.0));
         assert!(view(10.0).covered(beside.into_iter()) < 1.0, "out of the picture it is nowhere");
         assert_eq!(
-            view(-10.0).covered(cube().map(|corner| corner + Vec3::Z * 30.0).into_iter()),
+            view(10.0).covered(cube().map(|corner| corner + Vec3::Z * 30.0).into_iter()),
             0.0,
             "behind the eye"
         );

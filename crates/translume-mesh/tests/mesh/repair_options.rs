@@ -194,7 +194,7 @@ fn copies_of_a_vertex_become_one_if_asked_and_only_if_they_carry_the_same() {
 #[test]
 fn what_remains_tells_where_it_came_from() {
     // Welding drops two of every three copies, a hole of more than eight edges gets a vertex in its middle.
-    let mut open = sphere(2);
+    let mut open = sphere(3);
     let high = |v: u32| open.positions[v as usize][1] > 0.5;
     let kept = open.triangles.iter().filter(|t| !t.iter().all(|&v| high(v))).copied().collect();
     open.triangles = kept;
