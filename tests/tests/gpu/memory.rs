@@ -86,7 +86,7 @@ fn bodies_that_take_turns_compute_the_same_in_less_memory() {
     holds(turns(&translume, |_| ()));
     assert!(translume.memory() > 0, "scratch memory stays");
     notices(turns(&translume, |body| {
-        body.set_medium(Medium::MARBLE).map(|()| body.trim(&gpu().device)).unwrap()
+        body.set_medium(Medium::MARBLE).map(|()| body.trim(&gpu().device)).unwrap();
     }));
 }
 

@@ -85,7 +85,7 @@ fn bodies(host: &Host, translume: &Translume) -> Vec<Body> {
         let descriptor = BodyDescriptor {
             medium: [Medium::JADE, Medium::SKIN1, Medium::WAX][k % 3],
             mm_per_unit: 1.0,
-            shares_scratch: k % 2 == 0,
+            shares_scratch: k.is_multiple_of(2),
             shadows: ShadowOptions {
                 resolution: 32,
                 area_points: 4,

@@ -4,6 +4,7 @@ use super::Body;
 use crate::evaluate::Evaluate;
 use crate::memory::MemoryUse;
 use crate::stages::scatter::dual::{Demand, ListSizes};
+use crate::stages::scatter::pattern::PatternMemory;
 use crate::stages::shadow::{DepthLayers, depth_bytes};
 use crate::stages::visibility::SkyMemory;
 use crate::stages::{Stage, StageSet};
@@ -21,7 +22,7 @@ impl Body {
             let lists = if self.shares_lists(self.evaluated) { 0 } else { memory.lists.sizes().bytes() };
             memory.bytes() + lists
         });
-        let pattern = self.pattern.as_ref().map_or(0, |memory| memory.bytes());
+        let pattern = self.pattern.as_ref().map_or(0, PatternMemory::bytes);
         let own = |layers: &Arc<DepthLayers>| if self.shares_scratch { 0 } else { layers.bytes() };
         let depth = own(&self.depth_maps.layers) + self.sky.depth().map_or(0, own);
         MemoryUse {
