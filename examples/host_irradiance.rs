@@ -4,6 +4,8 @@
 //! `cargo run --release -p translume-examples --example host_irradiance` writes `out/host_irradiance.png`: a projector throws a flower
 //! onto a ball of wax, and the wax blurs it.
 
+#![allow(clippy::print_stdout, reason = "a program talks to its terminal")]
+
 use std::error::Error;
 use translume::{
     BodyDescriptor, CompositeTarget, Config, Frame, Gloss, Lighting, Medium, Stage, Translume, wgpu,

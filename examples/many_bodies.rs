@@ -4,6 +4,8 @@
 //! `cargo run --release -p translume-examples --example many_bodies` writes `out/many_bodies.png` and says what memory it takes and how
 //! long frames last.
 
+#![allow(clippy::print_stdout, reason = "a program talks to its terminal")]
+
 use std::error::Error;
 use std::time::Instant;
 use translume::{

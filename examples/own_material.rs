@@ -4,6 +4,8 @@
 //! `cargo run --release -p translume-examples --example own_material` writes `out/own_material.png` and says how far the material's
 //! radiance is from that of the library's own composite.
 
+#![allow(clippy::print_stdout, reason = "a program talks to its terminal")]
+
 use std::error::Error;
 use translume::{
     BodyDescriptor, Composite, CompositeTarget, Config, DirectionalLight, Frame, Geometry, Gloss, Light,

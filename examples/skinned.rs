@@ -4,6 +4,8 @@
 //! `cargo run --release -p translume-examples --example skinned` writes `out/skinned.png`: a creature that sways. With a file that has a
 //! skin and an animation, `-- fox.glb`, it shows that one half-way through its first.
 
+#![allow(clippy::print_stdout, reason = "a program talks to its terminal")]
+
 use std::error::Error;
 use translume::{
     AmbientLight, BodyDescriptor, CompositeTarget, Config, Deformation, DirectionalLight, Frame, Gloss,

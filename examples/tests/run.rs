@@ -1,5 +1,8 @@
 //! Every example runs, and its picture is what somebody looked at. `TRANSLUME_BLESS=1` writes new pictures; then look at them.
 
+#![allow(clippy::panic, clippy::unwrap_used, reason = "a failure here is a failed test")]
+#![allow(clippy::print_stdout, reason = "measured figures, for `--nocapture`")]
+
 use image::{RgbImage, imageops};
 use std::path::{Path, PathBuf};
 use std::process::Command;
