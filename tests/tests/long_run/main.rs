@@ -32,6 +32,8 @@ impl Host {
     fn new() -> Self {
         let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle().with_env();
         descriptor.flags = wgpu::InstanceFlags::VALIDATION;
+        // Where no window is, OpenGL has complaints that are not about us.
+        descriptor.backends = wgpu::Backends::from_env().unwrap_or(wgpu::Backends::PRIMARY);
         let instance = wgpu::Instance::new(descriptor);
         let adapter = pollster::block_on(wgpu::util::initialize_adapter_from_env(&instance, None))
             .or_else(|_| {
