@@ -222,7 +222,8 @@ impl Body {
             exitance_view,
             depth_maps,
         };
-        body.settle()?;
+        body.account.check(body.memory().total())?;
+        body.note_memory();
         Ok(body)
     }
 
@@ -320,7 +321,8 @@ impl Body {
         self.refresh_table(queue, frame::diagonal(&corners));
         self.place_evaluation(queue, frame, &corners);
         self.refresh_method(device, queue);
-        self.settle_turns();
+        self.note_memory();
+        self.draw_shared_depth();
         if self.is_timed {
             self.timer.get_or_insert_with(|| Timer::new(device, queue)).next_frame();
         }
@@ -368,12 +370,11 @@ impl Body {
     /// Says whether the next frame looks at the sky.
     fn prepare_sky(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, subject: &Subject<'_>) -> bool {
         let stages = Arc::clone(&self.stages);
-        let depth = || self.sky_depth(device);
-        if let (true, Some(_)) = (self.shares_scratch, self.sky.depth()) {
-            let depth = depth();
+        let depth = self.depth_layers(device, self.sky.depth(), SkyMemory::width(&self.shadows), 1);
+        if self.sky.depth().is_some() {
             self.sky.take_turns(device, &stages.visibility, &self.buffers, depth);
-        } else if self.sky.depth().is_none() {
-            let (depth, options) = (depth(), (&self.shadows, self.extent.texels));
+        } else {
+            let options = (&self.shadows, self.extent.texels);
             self.sky.allocate(device, (&stages.visibility, &stages.shadow), &self.buffers, options, depth);
             self.bind_gather(device);
         }

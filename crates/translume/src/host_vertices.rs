@@ -159,7 +159,8 @@ impl Place {
 
 /// Which vertices of the host are a body's, and the bindings of the places where they were found.
 pub(crate) struct HostNumbers {
-    numbers: Vec<u32>,
+    /// `None` where they are numbered alike.
+    numbers: Option<Vec<u32>>,
     last: u32,
     memory: Option<Memory>,
 }
@@ -173,9 +174,11 @@ struct Memory {
 
 impl HostNumbers {
     pub fn new(numbers: Option<&[u32]>, vertices: u32) -> Self {
-        let numbers = numbers.map_or_else(|| (0..vertices).collect(), <[u32]>::to_vec);
-        let last = numbers.iter().copied().max().unwrap_or_default();
-        Self { numbers, last, memory: None }
+        let last = match numbers {
+            Some(numbers) => numbers.iter().copied().max().unwrap_or_default(),
+            None => vertices.saturating_sub(1),
+        };
+        Self { numbers: numbers.map(<[u32]>::to_vec), last, memory: None }
     }
 
     pub fn check(&self, adopted: &Adopted, limits: &wgpu::Limits) -> Result<(), Error> {
@@ -201,10 +204,14 @@ impl HostNumbers {
         adopted: &Adopted,
         limits: &wgpu::Limits,
     ) {
-        let memory = self.memory.get_or_insert_with(|| Memory {
-            uniform: gpu::uniform_buffer(device, "adopt", size_of::<AdoptLayout>() as u64),
-            numbers: gpu::buffer_with(device, "host vertices", BufferUsages::STORAGE, &self.numbers),
-            groups: Vec::with_capacity(PLACES + 1),
+        let memory = self.memory.get_or_insert_with(|| {
+            let alike = || (0..=self.last).collect();
+            let numbers = self.numbers.clone().unwrap_or_else(alike);
+            Memory {
+                uniform: gpu::uniform_buffer(device, "adopt", size_of::<AdoptLayout>() as u64),
+                numbers: gpu::buffer_with(device, "host vertices", BufferUsages::STORAGE, &numbers),
+                groups: Vec::with_capacity(PLACES + 1),
+            }
         });
         let positions = &adopted.positions;
         let normals = adopted.normals.as_ref();

@@ -151,6 +151,26 @@ fn a_budget_is_kept() {
 }
 
 #[test]
+fn a_body_that_shared_lists_may_ask_for_its_own() {
+    // The larger body makes shared lists that outweigh all that the smaller one has.
+    let (large, small) = (translume_tests::sphere_with(128), translume_tests::sphere_with(24));
+    let translume = Translume::new(&gpu().device, &Config { memory: Some(1 << 30) }).unwrap();
+    let mut bodies = [&large, &small].map(|model| {
+        translume
+            .create_body(&gpu().device, &BodyDescriptor { list_entries: 1024, ..descriptor(model, true) })
+            .unwrap()
+    });
+    for body in &mut bodies {
+        body.prepare(&gpu().device, &gpu().queue, &lit(&[])).unwrap();
+    }
+    let [_, small] = &mut bodies;
+    let before = small.memory().scatter;
+    small.set_evaluate(Evaluate::PerVertex).unwrap();
+    small.prepare(&gpu().device, &gpu().queue, &lit(&[])).unwrap();
+    assert!(small.memory().scatter > before + 4 * 1024 * u64::from(small.texels()), "lists of its own");
+}
+
+#[test]
 fn levels_follow_the_size_in_the_picture() {
     let device = &gpu().device;
     let fine = translume_tests::sphere_with(64);

@@ -3,7 +3,7 @@
 use super::Body;
 use crate::evaluate::Evaluate;
 use crate::memory::MemoryUse;
-use crate::stages::scatter::dual::{Demand, ListSizes};
+use crate::stages::scatter::dual::{Demand, DualMemory, ListSizes};
 use crate::stages::scatter::pattern::PatternMemory;
 use crate::stages::shadow::{DepthLayers, depth_bytes};
 use crate::stages::visibility::SkyMemory;
@@ -18,10 +18,7 @@ impl Body {
     pub fn memory(&self) -> MemoryUse {
         let [mesh, atlas] = self.buffers.bytes();
         let pixels = u64::from(self.extent.atlas_size).pow(2);
-        let dual = self.dual.as_ref().map_or(0, |memory| {
-            let lists = if self.shares_lists(self.evaluated) { 0 } else { memory.lists.sizes().bytes() };
-            memory.bytes() + lists
-        });
+        let dual = self.dual.as_ref().map_or(0, DualMemory::bytes) + self.own_lists();
         let pattern = self.pattern.as_ref().map_or(0, PatternMemory::bytes);
         let own = |layers: &Arc<DepthLayers>| if self.shares_scratch { 0 } else { layers.bytes() };
         let depth = own(&self.depth_maps.layers) + self.sky.depth().map_or(0, own);
@@ -44,7 +41,7 @@ impl Body {
         self.bind_gather(device);
         self.pending = StageSet::default();
         (self.never_prepared, self.method_stale) = (true, true);
-        self.account.set(self.memory().total());
+        self.note_memory();
     }
 
     /// The depth maps that highlights look into.
@@ -52,17 +49,13 @@ impl Body {
         if self.shares_scratch { &self.stages.scratch.blank } else { &self.depth_maps.layers }
     }
 
-    /// Takes note of what there is.
-    pub(super) fn settle(&mut self) -> Result<(), Error> {
-        let bytes = self.memory().total();
-        self.account.check(bytes)?;
-        self.account.set(bytes);
-        Ok(())
+    /// What is allocated counts from here on.
+    pub(super) fn note_memory(&mut self) {
+        self.account.set(self.memory().total());
     }
 
-    /// Takes note of what a frame allocated. What another body left in shared memory is not looked at.
-    pub(super) fn settle_turns(&mut self) {
-        self.account.set(self.memory().total());
+    /// What another body left in shared depth maps is not looked at.
+    pub(super) fn draw_shared_depth(&mut self) {
         if self.shares_scratch && self.pending.contains(Stage::Gather) {
             self.pending.insert(StageSet::from_stage_on(Stage::Shadow));
         }
@@ -83,36 +76,42 @@ impl Body {
         if let Some(theta) = self.dual_theta().filter(|_| !self.shares_lists(evaluate)) {
             let demand = Demand { list_entries: self.list_entries, theta, evaluate };
             if !self.dual.as_ref().is_some_and(|memory| memory.serves(demand, &self.tree, &self.limits)) {
-                let old = self.dual.as_ref().map_or(0, |memory| memory.lists.sizes().bytes());
-                then = then - old + ListSizes::new(&self.tree, demand, &self.limits).bytes();
+                then = then - self.own_lists() + ListSizes::new(&self.tree, demand, &self.limits).bytes();
             }
         }
         if then > now { self.account.check(then) } else { Ok(()) }
     }
 
     pub(super) fn make_room_for_views(&mut self, device: &wgpu::Device, layers: u32) {
-        let (width, layers) = (self.shadows.resolution, layers.max(1));
-        let layers = if self.shares_scratch {
-            self.stages.scratch.depth(device, width, layers)
-        } else if self.depth_maps.layers.fit(width, layers) {
-            return;
-        } else {
-            Arc::new(DepthLayers::new(device, width, layers))
-        };
+        let (here, width) = (&self.depth_maps.layers, self.shadows.resolution);
+        let layers = self.depth_layers(device, Some(here), width, layers.max(1));
         if !Arc::ptr_eq(&self.depth_maps.layers, &layers) {
             self.depth_maps.layers = layers;
             self.bind_gather(device);
         }
     }
 
-    /// The layer of depth that the sky is looked at with.
-    pub(super) fn sky_depth(&self, device: &wgpu::Device) -> Arc<DepthLayers> {
-        let width = SkyMemory::width(&self.shadows);
+    /// Layers of depth to draw into: shared ones as they are now, or those that are `here` if they fit.
+    pub(super) fn depth_layers(
+        &self,
+        device: &wgpu::Device,
+        here: Option<&Arc<DepthLayers>>,
+        width: u32,
+        layers: u32,
+    ) -> Arc<DepthLayers> {
         if self.shares_scratch {
-            self.stages.scratch.depth(device, width, 1)
-        } else {
-            Arc::new(DepthLayers::new(device, width, 1))
+            return self.stages.scratch.depth(device, width, layers);
         }
+        match here.filter(|here| here.fit(width, layers)) {
+            Some(here) => Arc::clone(here),
+            None => Arc::new(DepthLayers::new(device, width, layers)),
+        }
+    }
+
+    /// Bytes of lists that are no others'.
+    fn own_lists(&self) -> u64 {
+        let own = self.dual.as_ref().filter(|_| !self.shares_lists(self.evaluated));
+        own.map_or(0, |memory| memory.lists.sizes().bytes())
     }
 
     /// Exitance at points is summed up when the picture is drawn: then the lists have to last.
