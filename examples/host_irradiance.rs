@@ -7,10 +7,8 @@
 #![allow(clippy::print_stdout, reason = "a program talks to its terminal")]
 
 use std::error::Error;
-use translume::{
-    BodyDescriptor, CompositeTarget, Config, Frame, Gloss, Lighting, Medium, Stage, Translume, wgpu,
-};
-use translume_examples::{Host, Picture, camera};
+use translume::{BodyDescriptor, Config, Frame, Gloss, Lighting, Medium, Stage, Translume, wgpu};
+use translume_examples::{Compute, Host, Picture, camera};
 use translume_mesh::{Atlas, AtlasOptions, builtin};
 
 /// As in `host_irradiance.wgsl`.
@@ -53,28 +51,22 @@ fn main() -> Result<(), Box<dyn Error>> {
         texels,
         padding: [0; 2],
     };
-    let lighting = lighting(&host, &projector, &body, &irradiance);
+    // Of Translume's material functions the engine's shader takes the Fresnel term.
+    let source = format!("{}\n{}", translume_shaders::MATERIAL, include_str!("host_irradiance.wgsl"));
+    let uniform = host.buffer(&[projector], wgpu::BufferUsages::UNIFORM);
+    let outputs = body.outputs();
+    let buffers = [&uniform, outputs.texel_positions, outputs.texel_normals, &irradiance];
+    let lighting = Compute::new(&host, &source, "light", &buffers);
 
     // Each frame: Translume's first stages, the engine's light, and the rest of Translume's. One encoder takes all.
     let frame = Frame { lighting: Lighting::Irradiance(&irradiance), ..Default::default() };
     body.prepare(&host.device, &host.queue, &frame)?;
     let mut encoder = host.encoder();
     body.encode_through(&mut encoder, Stage::Gather);
-    {
-        let (pipeline, group) = &lighting;
-        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
-        pass.set_pipeline(pipeline);
-        pass.set_bind_group(0, group, &[]);
-        pass.dispatch_workgroups(texels.div_ceil(64), 1, 1);
-    }
+    lighting.encode(&mut encoder, texels);
     body.encode(&mut encoder);
 
-    let target = CompositeTarget {
-        format: Picture::FORMAT,
-        depth: Some((Picture::DEPTH, wgpu::CompareFunction::Less)),
-        samples: Picture::SAMPLES,
-    };
-    let composite = translume.composite(&host.device, target);
+    let composite = translume.composite(&host.device, Picture::TARGET);
     let mut view = composite.view(&host.device, &body);
     let camera = camera([0.0, 15.0, 90.0], [0.0; 3], picture.aspect());
     view.prepare(&host.device, &host.queue, &body, &camera, Gloss::None);
@@ -82,39 +74,4 @@ fn main() -> Result<(), Box<dyn Error>> {
     host.queue.submit([encoder.finish()]);
     println!("wrote {}", picture.save(&host, "host_irradiance")?.display());
     Ok(())
-}
-
-/// The engine's pipeline over texels.
-fn lighting(
-    host: &Host,
-    projector: &Projector,
-    body: &translume::Body,
-    irradiance: &wgpu::Buffer,
-) -> (wgpu::ComputePipeline, wgpu::BindGroup) {
-    // Of Translume's material functions this takes the Fresnel term.
-    let source = format!("{}\n{}", translume_shaders::MATERIAL, include_str!("host_irradiance.wgsl"));
-    let module = host.device.create_shader_module(wgpu::ShaderModuleDescriptor {
-        label: Some("projector"),
-        source: wgpu::ShaderSource::Wgsl(source.into()),
-    });
-    let pipeline = host.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-        label: Some("projector"),
-        layout: None,
-        module: &module,
-        entry_point: Some("light"),
-        compilation_options: wgpu::PipelineCompilationOptions::default(),
-        cache: None,
-    });
-    let uniform = host.buffer(&[*projector], wgpu::BufferUsages::UNIFORM);
-    let outputs = body.outputs();
-    let entries: Vec<_> = (0..)
-        .zip([&uniform, outputs.texel_positions, outputs.texel_normals, irradiance])
-        .map(|(binding, buffer)| wgpu::BindGroupEntry { binding, resource: buffer.as_entire_binding() })
-        .collect();
-    let group = host.device.create_bind_group(&wgpu::BindGroupDescriptor {
-        label: Some("projector"),
-        layout: &pipeline.get_bind_group_layout(0),
-        entries: &entries,
-    });
-    (pipeline, group)
 }

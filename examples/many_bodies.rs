@@ -9,8 +9,8 @@
 use std::error::Error;
 use std::time::Instant;
 use translume::{
-    AmbientLight, BodyDescriptor, CompositeTarget, CompositeView, Config, Deformation, DirectionalLight,
-    Frame, Gloss, Levels, Light, Lighting, Medium, ShadowOptions, Translume, View, wgpu,
+    AmbientLight, BodyDescriptor, CompositeView, Config, Deformation, DirectionalLight, Frame, Gloss, Levels,
+    Light, Lighting, Medium, ShadowOptions, Translume, View, wgpu,
 };
 use translume_examples::{Host, Picture, camera};
 use translume_mesh::{Atlas, AtlasOptions, builtin, warp::Warp};
@@ -39,12 +39,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mesh = builtin::creature_with(4_000);
     let atlas = |size| Atlas::build(&mesh, &AtlasOptions { size, ..Default::default() }, |_| true);
     let atlases = [atlas(96)?, atlas(48)?];
-    let target = CompositeTarget {
-        format: Picture::FORMAT,
-        depth: Some((Picture::DEPTH, wgpu::CompareFunction::Less)),
-        samples: Picture::SAMPLES,
-    };
-    let composite = translume.composite(&host.device, target);
+    let composite = translume.composite(&host.device, Picture::TARGET);
     let media = [Medium::JADE, Medium::WAX, Medium::SKIN1, Medium::WHOLEMILK];
     let mut things = Vec::new();
     for k in 0..SIDE * SIDE {

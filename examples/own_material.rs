@@ -8,8 +8,8 @@
 
 use std::error::Error;
 use translume::{
-    BodyDescriptor, Composite, CompositeTarget, Config, DirectionalLight, Frame, Geometry, Gloss, Light,
-    Lighting, Medium, PointLight, Translume, wgpu,
+    BodyDescriptor, Config, DirectionalLight, Frame, Geometry, Gloss, Light, Lighting, Medium, PointLight,
+    Translume, wgpu,
 };
 use translume_examples::{Host, Picture, camera, relative_rmse};
 use translume_mesh::{Atlas, AtlasOptions, builtin};
@@ -99,14 +99,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("wrote {}", picture.save(&host, "own_material")?.display());
 
     // Not for engines: the same body alone, without a highlight, by this material and by the library's composite.
-    let composite: Composite = translume.composite(
-        &host.device,
-        CompositeTarget {
-            format: Picture::FORMAT,
-            depth: Some((Picture::DEPTH, wgpu::CompareFunction::Less)),
-            samples: Picture::SAMPLES,
-        },
-    );
+    let composite = translume.composite(&host.device, Picture::TARGET);
     let mut view = composite.view(&host.device, &body);
     view.prepare(&host.device, &host.queue, &body, &camera, Gloss::None);
     let draw = |draw: &dyn Fn(&mut wgpu::RenderPass<'_>)| {

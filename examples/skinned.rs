@@ -8,10 +8,10 @@
 
 use std::error::Error;
 use translume::{
-    AmbientLight, BodyDescriptor, CompositeTarget, Config, Deformation, DirectionalLight, Frame, Gloss,
-    HostVertices, Light, Lighting, Medium, PointLight, Region, Translume, VertexVectors, wgpu,
+    AmbientLight, BodyDescriptor, Config, Deformation, DirectionalLight, Frame, Gloss, HostVertices, Light,
+    Lighting, Medium, PointLight, Region, Translume, VertexVectors, wgpu,
 };
-use translume_examples::{Host, Picture, camera};
+use translume_examples::{Compute, Host, Picture, camera};
 use translume_mesh::{Atlas, AtlasOptions, Influence, Mesh, Skin, builtin, load, rig};
 
 /// Joint matrices from the rest pose to the model, column-major.
@@ -32,7 +32,15 @@ fn main() -> Result<(), Box<dyn Error>> {
 
     // Once: the engine's buffers, and its skinning. The vertex buffer needs STORAGE besides VERTEX, for its own shader and for Translume's.
     let vertices = host.buffer(&interleaved(&mesh), wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::STORAGE);
-    let skinning = Skinning::new(&host, &mesh, &joints, &vertices);
+    let storage = wgpu::BufferUsages::STORAGE;
+    let buffers = [
+        &host.buffer(&interleaved(&mesh), storage),
+        &host.buffer(&influences(&mesh), storage),
+        &host.buffer(&joints, storage),
+        &vertices,
+    ];
+    let skinning = Compute::new(&host, include_str!("skinned.wgsl"), "skin", &buffers);
+    let count = mesh.positions.len() as u32;
 
     // Once: the body, of the mesh in the engine's own numbering. Translume copies vertices at the seams of its atlas by itself (`xref`). Had
     // the mesh been repaired, `host_vertices: Some(&report.origins)` would say which vertices are left. Translume needs no skin.
@@ -71,16 +79,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     body.prepare(&host.device, &host.queue, &frame)?;
     let mut encoder = host.encoder();
-    skinning.encode(&mut encoder);
+    skinning.encode(&mut encoder, count);
     body.encode(&mut encoder);
 
     let picture = Picture::new(&host, [480, 400]);
-    let target = CompositeTarget {
-        format: Picture::FORMAT,
-        depth: Some((Picture::DEPTH, wgpu::CompareFunction::Less)),
-        samples: Picture::SAMPLES,
-    };
-    let composite = translume.composite(&host.device, target);
+    let composite = translume.composite(&host.device, Picture::TARGET);
     let mut view = composite.view(&host.device, &body);
     let camera = camera(at(1.2, 0.3, 1.9), at(0.0, 0.0, 0.0), picture.aspect());
     view.prepare(&host.device, &host.queue, &body, &camera, Gloss::Rough(0.4));
@@ -88,51 +91,6 @@ fn main() -> Result<(), Box<dyn Error>> {
     host.queue.submit([encoder.finish()]);
     println!("wrote {}", picture.save(&host, "skinned")?.display());
     Ok(())
-}
-
-/// The engine's skinning.
-struct Skinning {
-    pipeline: wgpu::ComputePipeline,
-    group: wgpu::BindGroup,
-    workgroups: u32,
-}
-
-impl Skinning {
-    fn new(host: &Host, mesh: &Mesh, joints: &Joints, vertices: &wgpu::Buffer) -> Self {
-        let module = host.device.create_shader_module(wgpu::include_wgsl!("skinned.wgsl"));
-        let pipeline = host.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-            label: Some("skin"),
-            layout: None,
-            module: &module,
-            entry_point: Some("skin"),
-            compilation_options: wgpu::PipelineCompilationOptions::default(),
-            cache: None,
-        });
-        let storage = wgpu::BufferUsages::STORAGE;
-        let buffers = [
-            &host.buffer(&interleaved(mesh), storage),
-            &host.buffer(&influences(mesh), storage),
-            &host.buffer(joints, storage),
-            vertices,
-        ];
-        let entries: Vec<_> = (0..)
-            .zip(buffers)
-            .map(|(binding, buffer)| wgpu::BindGroupEntry { binding, resource: buffer.as_entire_binding() })
-            .collect();
-        let group = host.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("skin"),
-            layout: &pipeline.get_bind_group_layout(0),
-            entries: &entries,
-        });
-        Self { pipeline, group, workgroups: (mesh.positions.len() as u32).div_ceil(64) }
-    }
-
-    fn encode(&self, encoder: &mut wgpu::CommandEncoder) {
-        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
-        pass.set_pipeline(&self.pipeline);
-        pass.set_bind_group(0, &self.group, &[]);
-        pass.dispatch_workgroups(self.workgroups, 1, 1);
-    }
 }
 
 fn interleaved(mesh: &Mesh) -> Vec<[f32; 8]> {

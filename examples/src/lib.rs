@@ -2,7 +2,7 @@
 
 use std::error::Error;
 use std::path::PathBuf;
-use translume::{Camera, LookAt, readback, wgpu};
+use translume::{Camera, CompositeTarget, LookAt, readback, wgpu};
 
 /// The engine's device: WebGPU's default limits, no features.
 pub struct Host {
@@ -56,6 +56,13 @@ impl Picture {
     pub const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
     /// A pixel.
     pub const SAMPLES: u32 = 4;
+
+    /// What Translume's composite has to know of it.
+    pub const TARGET: CompositeTarget = CompositeTarget {
+        format: Self::FORMAT,
+        depth: Some((Self::DEPTH, wgpu::CompareFunction::Less)),
+        samples: Self::SAMPLES,
+    };
 
     /// So many pixels.
     #[must_use]
@@ -140,6 +147,50 @@ impl Picture {
     #[must_use]
     pub fn aspect(&self) -> f32 {
         self.resolved.width() as f32 / self.resolved.height() as f32
+    }
+}
+
+/// A compute shader of the engine and what it reads and writes.
+pub struct Compute {
+    pipeline: wgpu::ComputePipeline,
+    group: wgpu::BindGroup,
+}
+
+impl Compute {
+    /// Of the entry point of this name; `buffers` are bindings 0, 1, 2 … of group 0.
+    #[must_use]
+    pub fn new(host: &Host, source: &str, entry_point: &str, buffers: &[&wgpu::Buffer]) -> Self {
+        let Host { device, .. } = host;
+        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: Some(entry_point),
+            source: wgpu::ShaderSource::Wgsl(source.into()),
+        });
+        let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+            label: Some(entry_point),
+            layout: None,
+            module: &module,
+            entry_point: Some(entry_point),
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            cache: None,
+        });
+        let entries: Vec<_> = (0..)
+            .zip(buffers)
+            .map(|(binding, buffer)| wgpu::BindGroupEntry { binding, resource: buffer.as_entire_binding() })
+            .collect();
+        let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some(entry_point),
+            layout: &pipeline.get_bind_group_layout(0),
+            entries: &entries,
+        });
+        Self { pipeline, group }
+    }
+
+    /// In workgroups of 64.
+    pub fn encode(&self, encoder: &mut wgpu::CommandEncoder, items: u32) {
+        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+        pass.set_pipeline(&self.pipeline);
+        pass.set_bind_group(0, &self.group, &[]);
+        pass.dispatch_workgroups(items.div_ceil(64), 1, 1);
     }
 }
 
