@@ -26,6 +26,7 @@ Examples:
   translume render creature --medium marble --profile marble.json -o creature.png
   translume report --suite gather -o report                            error beside time of every kind of light
   translume report --suite scatter -o report                           and of every method
+  translume report --suite transport -o report                         how far models of light are from paths, by dense sums
 
 MODEL is an OBJ, glTF or GLB file, or a built-in: sphere, torus-knot, teapot, creature.
 RUST_LOG=info shows what wgpu has to say; WGPU_ADAPTER_NAME picks an adapter.";
@@ -287,11 +288,11 @@ pub struct Report {
     /// twists its spot.obj too.
     #[arg(value_name = "SCENE|MODEL")]
     pub models: Vec<String>,
-    /// What to measure: methods (every method in every scene, against both truths; the default), gather (irradiance in every kind of light) or
-    /// scatter (exitance against all pairs). Without a name the scenes that come with the program are added to those named.
+    /// What to measure: methods (every method in every scene, against both truths; the default), gather (irradiance in every kind of light),
+    /// scatter (exitance against all pairs) or transport (the dipole, and what goes past it, against paths; on the CPU). Without a name the scenes that come with the program are added to those named.
     #[arg(long, value_name = "NAME", num_args = 0..=1, default_missing_value = ALL)]
     pub suite: Option<String>,
-    /// Width of the atlas in texels; scatter also takes a quarter, a half and twice of that.
+    /// Width of the atlas in texels; scatter also takes a quarter, a half and twice of that, transport 96.
     #[arg(long, value_name = "N", default_value_t = 512)]
     pub atlas: u32,
     /// The reference looks at every Nth texel: of gather by default 7, quickly 31; of scatter as many as give some hundred texels. Texels
@@ -301,7 +302,8 @@ pub struct Report {
     /// Fewer settings, fewer repetitions.
     #[arg(long)]
     pub quick: bool,
-    /// Folder to write the report to: index.html, report.csv and pareto.png; of gather and scatter SUITE.csv, SUITE.md and SUITE.svg. It is made
+    /// Folder to write the report to: index.html, report.csv and pareto.png; of gather and scatter SUITE.csv, SUITE.md and SUITE.svg; of transport the
+    /// first two and a strip of pictures a scene. It is made
     /// where there is none.
     #[arg(short, long, value_name = "DIR")]
     pub output: PathBuf,

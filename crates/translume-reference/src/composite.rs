@@ -104,24 +104,30 @@ pub fn render(
 /// hold nothing are left out of the mean; 0 if all four do.
 #[must_use]
 pub fn look_up(atlas: &Atlas, exitance: &[[f64; 3]], hit: &Hit) -> [f64; 3] {
+    let mut sum = [0.0; 3];
+    for (texel, weight) in texels_at(atlas, hit) {
+        accumulate(&mut sum, exitance[texel], weight);
+    }
+    sum
+}
+
+/// Up to four texels around a hit and their weights, which add up to 1.
+pub(crate) fn texels_at(atlas: &Atlas, hit: &Hit) -> impl Iterator<Item = (usize, f64)> + use<> {
     let size = f64::from(atlas.size);
     let place = texture_coordinate(atlas, hit.triangle, hit.barycentric).map(|x| x * size - 0.5);
     let corner = place.map(f64::floor);
-    let (mut sum, mut total) = ([0.0; 3], 0.0);
-    for (dx, dy) in [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)] {
+    let texels = [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)].map(|(dx, dy)| {
         let (x, y) = (corner[0] + dx, corner[1] + dy);
         let weight = (1.0 - (place[0] - x).abs()) * (1.0 - (place[1] - y).abs());
         let [column, row] = [x, y].map(|k| k.clamp(0.0, size - 1.0) as usize);
         let texel = atlas.pixels[row * atlas.size as usize + column];
-        if texel != Atlas::EMPTY {
-            accumulate(&mut sum, exitance[texel as usize], weight);
-            total += weight;
-        }
-    }
-    if total > 0.0 { scale(sum, 1.0 / total) } else { [0.0; 3] }
+        (texel as usize, if texel == Atlas::EMPTY { 0.0 } else { weight })
+    });
+    let total: f64 = texels.iter().map(|(_, weight)| weight).sum();
+    texels.into_iter().filter(|(_, weight)| *weight > 0.0).map(move |(texel, weight)| (texel, weight / total))
 }
 
-fn view_cosine(surface: &Surface, hit: &Hit, direction: DVec3) -> f64 {
+pub(crate) fn view_cosine(surface: &Surface, hit: &Hit, direction: DVec3) -> f64 {
     let normal = DVec3::from(surface.normal(hit.triangle, hit.barycentric));
     let seen_from_behind = DVec3::from(surface.face_normal(hit.triangle)).dot(direction) > 0.0;
     let cos = -normal.dot(direction.normalize_or_zero());

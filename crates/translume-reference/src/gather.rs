@@ -138,7 +138,7 @@ impl Gather<'_> {
 
 /// Weights outside the triangle are moved into it and renormalised. They end a little inside: a ray from the very edge of a crease starts
 /// on both of its triangles, and neither shadows it.
-fn clamped([b, c]: [f64; 2]) -> [f64; 2] {
+pub(crate) fn clamped([b, c]: [f64; 2]) -> [f64; 2] {
     const INSIDE: f64 = 1e-4;
     if (1.0 - b - c).min(b).min(c) >= 0.0 {
         return [b, c];

@@ -12,6 +12,7 @@
 //! | [`converged`] | radiant exitance from the triangles themselves: what `scatter` tends to with ever more texels |
 //! | [`composite`] | the camera's picture |
 //! | [`path`] | the picture without any diffusion model: paths through the body, with the standard error of every pixel |
+//! | [`transport`] | radiance from diffusion with the body's own boundary, and what diffusion lacks |
 //! | [`metrics`] | how far a picture is from another |
 //!
 //! The stages carry the names of the GPU stages they judge and share no code with them. Lengths are millimetres,
@@ -39,6 +40,7 @@ pub mod scatter;
 pub mod surface;
 #[cfg(test)]
 mod testing;
+pub mod transport;
 
 pub use boundary::Boundary;
 pub use dipole::Dipole;

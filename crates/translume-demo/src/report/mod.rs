@@ -13,6 +13,7 @@ mod scatter;
 mod scenes;
 mod subject;
 mod table;
+mod transport;
 mod trials;
 mod twin;
 
@@ -28,9 +29,13 @@ pub fn run(arguments: &Report) -> Result<(), Error> {
         None | Some(cli::ALL) => frontier::run(arguments),
         Some("gather") => gather::run(arguments),
         Some("scatter") => scatter::run(arguments),
+        Some("transport") => transport::run(arguments),
         Some(other) => Err(Error::Option {
             option: "--suite",
-            problem: format!("no suite is called \"{other}\"; known are {}, gather, scatter", cli::ALL),
+            problem: format!(
+                "no suite is called \"{other}\"; known are {}, gather, scatter, transport",
+                cli::ALL
+            ),
         }),
     }
 }

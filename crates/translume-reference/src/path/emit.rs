@@ -55,7 +55,7 @@ impl Bounds {
 impl Lamp {
     /// A ray towards the body. `place` in the unit square tells where it goes as far as the light leaves a choice, neighbours to
     /// neighbours; uniform places make a power that is right on average.
-    pub fn emit(&self, bounds: &Bounds, place: [f64; 2], dice: &mut Dice) -> Ray {
+    pub(super) fn emit(&self, bounds: &Bounds, place: [f64; 2], dice: &mut Dice) -> Ray {
         match self {
             Self::Sun { to_light, irradiance, .. } => {
                 bounds.ray(*to_light, place, scale(*irradiance, bounds.area()))

@@ -18,7 +18,7 @@ use crate::{EnvironmentMap, Light};
 const WIDE: f64 = 0.5;
 
 /// A light made ready.
-pub(super) enum Lamp {
+pub(crate) enum Lamp {
     Sun { to_light: DVec3, irradiance: [f64; 3], region: Option<Region> },
     Point { position: DVec3, intensity: [f64; 3], cone: Option<(DVec3, [f64; 2])>, region: Option<Region> },
     Cap { axis: DVec3, opening: f64, radiance: [f64; 3] },
@@ -28,7 +28,7 @@ pub(super) enum Lamp {
 }
 
 /// A direction that light comes from.
-pub(super) struct Aim {
+pub(crate) struct Aim {
     pub direction: DVec3,
     /// How far away the light is, mm.
     pub distance: f64,
@@ -39,7 +39,7 @@ pub(super) struct Aim {
 }
 
 /// What a ray meets.
-pub(super) struct Sight {
+pub(crate) struct Sight {
     /// How far away it is, mm.
     pub distance: f64,
     pub radiance: [f64; 3],

@@ -21,7 +21,7 @@ mod fan;
 mod film;
 mod grid;
 mod guide;
-mod lamp;
+pub(crate) mod lamp;
 mod lists;
 mod mesh;
 mod photons;
@@ -29,7 +29,7 @@ mod shape;
 mod trace;
 mod volume;
 mod walk;
-mod way;
+pub(crate) mod way;
 
 pub use estimate::Estimate;
 pub use fan::{Fan, Vantage};

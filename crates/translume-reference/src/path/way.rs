@@ -90,7 +90,7 @@ pub(super) fn surely_inside(shape: &dyn Shape, way: &Way<'_>, [step, enough]: [f
 }
 
 /// Whether light enters at a point.
-pub(super) fn is_lit(region: Option<Region>, at: DVec3) -> bool {
+pub(crate) fn is_lit(region: Option<Region>, at: DVec3) -> bool {
     region.is_none_or(|(low, high)| at.cmpge(low.into()).all() && at.cmple(high.into()).all())
 }
 

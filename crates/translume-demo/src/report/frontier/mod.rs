@@ -7,11 +7,11 @@ mod judge;
 mod page;
 mod plot;
 mod row;
-mod scenes;
+pub(super) mod scenes;
 mod shot;
-mod stage;
+pub(super) mod stage;
 mod summary;
-mod truth;
+pub(super) mod truth;
 
 use super::bench::Repeats;
 use super::{prepare_folder, write};

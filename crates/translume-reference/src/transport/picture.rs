@@ -1,0 +1,103 @@
+//! The camera's picture of a solution whose sites are the texels of an atlas.
+
+use glam::DVec3;
+use rayon::prelude::*;
+use std::f64::consts::PI;
+use translume_mesh::Atlas;
+
+use super::layer::Seen;
+use super::shortfall::shortfall;
+use super::single::single;
+use super::source::Lamps;
+use super::{Layers, Solution};
+use crate::composite::{Camera, Picture, texels_at, view_cosine};
+use crate::dice::Dice;
+use crate::fresnel::{hemispherical_transmittance, transmittance};
+use crate::{Hit, Surface};
+
+/// How light leaves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Tier {
+    /// By the diffuse law, L = F_t B / π (1 − F_dr,ext).
+    Boundary,
+    /// Gathered along the ray of view from under the surface, and once scattered. Through a surface that refracts as [`Tier::Boundary`].
+    Layers,
+}
+
+/// A picture of a surface; the sites of the solution are the atlas's texels in its order.
+#[must_use]
+pub fn picture(
+    camera: &Camera,
+    surface: &Surface,
+    atlas: &Atlas,
+    solution: &Solution<'_>,
+    tier: Tier,
+) -> Picture {
+    let is_matched = solution.rays.ior == 1.0;
+    let layers = (tier == Tier::Layers && is_matched).then(|| solution.layers());
+    let eye = Eye {
+        surface,
+        atlas,
+        solution,
+        layers,
+        lamps: Lamps::new(solution.body.lights),
+        boost: std::array::from_fn(|k| 1.0 + shortfall(&solution.medium[k])),
+    };
+    let pixel = |index: usize| {
+        let direction =
+            DVec3::from(camera.direction(index % camera.width, index / camera.width)).normalize_or_zero();
+        let hit = surface.closest_hit(camera.eye, direction.to_array())?;
+        Some(eye.radiance(camera, &hit, direction, index).map(|value| value as f32))
+    };
+    let pixels: Vec<Option<[f32; 3]>> =
+        (0..camera.width * camera.height).into_par_iter().map(pixel).collect();
+    Picture {
+        width: camera.width,
+        height: camera.height,
+        radiance: pixels.iter().map(|pixel| pixel.unwrap_or_default()).collect(),
+        mask: pixels.iter().map(Option::is_some).collect(),
+    }
+}
+
+struct Eye<'a> {
+    surface: &'a Surface,
+    atlas: &'a Atlas,
+    solution: &'a Solution<'a>,
+    layers: Option<Layers<'a>>,
+    lamps: Lamps,
+    /// How much single scattering counts.
+    boost: [f64; 3],
+}
+
+/// Rays that graze the surface by less than this run along it.
+const GRAZING: f64 = 0.02;
+
+impl Eye<'_> {
+    fn radiance(&self, camera: &Camera, hit: &Hit, direction: DVec3, index: usize) -> [f64; 3] {
+        let rays = &self.solution.rays;
+        let cosine = view_cosine(self.surface, hit, direction);
+        let sites: Vec<(usize, f64)> = texels_at(self.atlas, hit).collect();
+        let Some(layers) = &self.layers else {
+            let leaves = transmittance(rays.ior, cosine) / (PI * hemispherical_transmittance(rays.ior));
+            let mut sum = [0.0; 3];
+            for (site, weight) in sites {
+                crate::rgb::accumulate(&mut sum, self.solution.exitance(site), weight * leaves);
+            }
+            return sum;
+        };
+        let mut dice = Dice::stream(3, index as u64);
+        let ray = (DVec3::from(camera.eye), direction);
+        let chord = rays.segments(ray.0, ray.1, f64::INFINITY).first().map_or(0.0, |[from, to]| to - from);
+        let place =
+            DVec3::from(self.surface.point(hit.triangle, hit.barycentric)) + direction * (10.0 * rays.offset);
+        let far = self.surface.closest_hit(place.to_array(), direction.to_array()).and_then(|far| {
+            let normal = DVec3::from(self.surface.normal(far.triangle, far.barycentric));
+            let (site, _) = texels_at(self.atlas, &far).max_by(|a, b| a.1.total_cmp(&b.1))?;
+            Some((site, normal.dot(direction).max(GRAZING)))
+        });
+        let many = layers.radiance(&Seen { sites, cosine: cosine.max(GRAZING), chord, far });
+        let once = single(&self.solution.medium, rays, &self.lamps, ray, &mut dice);
+        std::array::from_fn(|k| many[k] + self.boost[k] * once[k])
+    }
+}

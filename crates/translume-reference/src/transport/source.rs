@@ -1,0 +1,242 @@
+//! Light that entered, as points in the volume.
+//!
+//! Along the refracted ray it is used up exponentially, until the ray leaves the body. Its first scattering is put into strata of equal power, each
+//! a disc of the site's area at the stratum's mean depth. Light from many directions is one such row of discs, at the mean of theirs.
+
+use glam::DVec3;
+
+use super::Site;
+use super::coefficients::{Coefficients, hopf_shift};
+use super::disc::Disc;
+use super::rays::{Rays, SKY};
+use crate::Light;
+use crate::dice::Dice;
+use crate::fresnel::{refracted_cos, transmittance};
+use crate::lights::strata::{Strata as Cells, hemisphere};
+use crate::path::lamp::{Aim, Lamp};
+use crate::path::way::is_lit;
+use crate::rgb::scale;
+
+/// Strata of a ray.
+const COUNT: usize = 3;
+
+/// What entered a site.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Source {
+    /// Power of each stratum's first scattering in each channel, W/m² mm².
+    power: [[f64; 3]; COUNT],
+    place: [[DVec3; 3]; COUNT],
+    /// Light that entered, W/m².
+    pub irradiance: [f64; 3],
+    /// Mean cosine of its directions inside to the normal, inwards; 1 in the dark.
+    pub cosine: f64,
+}
+
+/// Light on its way in.
+struct Beam {
+    /// Into the body.
+    direction: DVec3,
+    cosine: f64,
+    /// W/m² that enter.
+    irradiance: [f64; 3],
+    /// Way through the body to the other side, and the way through other parts of it before, mm.
+    chord: f64,
+    crossed: f64,
+}
+
+/// The lights made ready.
+pub(super) struct Lamps(pub Vec<Lamp>);
+
+impl Lamps {
+    pub fn new(lights: &[Light]) -> Self {
+        Self(lights.iter().filter_map(Lamp::new).collect())
+    }
+
+    pub fn enter(
+        &self,
+        rays: &Rays<'_>,
+        medium: &[Coefficients; 3],
+        site: &Site,
+        thickness: f64,
+        index: usize,
+    ) -> Source {
+        let beams: Vec<Beam> =
+            self.aims(site, index).into_iter().filter_map(|aim| beam(rays, site, &aim)).collect();
+        Source::new(medium, site, thickness, &beams)
+    }
+
+    /// Directions that light comes from, with the light of each on a facing plane.
+    fn aims(&self, site: &Site, index: usize) -> Vec<Aim> {
+        let (position, normal) = (DVec3::from(site.position), DVec3::from(site.normal));
+        let mut dice = Dice::stream(2, index as u64);
+        let mut aims = Vec::new();
+        for (stream, lamp) in self.0.iter().enumerate() {
+            if lamp.region().is_some_and(|region| !is_lit(Some(region), position)) {
+                continue;
+            }
+            let count = SKY * SKY;
+            if lamp.has_no_extent() {
+                aims.extend(lamp.aim(position, &mut dice));
+            } else if lamp.is_aimed_at() {
+                let share = 1.0 / f64::from(count);
+                let aim = (0..count).filter_map(|_| lamp.aim(position, &mut dice));
+                aims.extend(aim.map(|aim| Aim { light: scale(aim.light, share), ..aim }));
+            } else {
+                for point in Cells::new(SKY, position, stream).points() {
+                    let direction = hemisphere(normal, point);
+                    let share = std::f64::consts::PI / (normal.dot(direction) * f64::from(count));
+                    aims.extend(lamp.sight(position, direction).map(|sight| Aim {
+                        direction,
+                        distance: sight.distance,
+                        light: scale(sight.radiance, share),
+                        density: 0.0,
+                    }));
+                }
+            }
+        }
+        aims
+    }
+}
+
+/// `None` from behind, and through a surface that refracts where the body is in the way.
+fn beam(rays: &Rays<'_>, site: &Site, aim: &Aim) -> Option<Beam> {
+    let normal = DVec3::from(site.normal);
+    let outside = Some(normal.dot(aim.direction)).filter(|cos| *cos > 0.0)?;
+    let origin = DVec3::from(site.position) + normal * rays.offset;
+    let cosine = refracted_cos(rays.ior, outside);
+    let direction = (outside * normal - aim.direction) / rays.ior - normal * cosine;
+    let crossed = if rays.ior == 1.0 {
+        rays.inside(origin, aim.direction, aim.distance)
+    } else if rays.shape.first(origin, aim.direction, false, aim.distance).is_some() {
+        return None;
+    } else {
+        0.0
+    };
+    let irradiance = scale(aim.light, outside * transmittance(rays.ior, outside));
+    Some(Beam { direction, cosine, irradiance, chord: rays.chord(site, direction), crossed })
+}
+
+impl Source {
+    fn new(medium: &[Coefficients; 3], site: &Site, thickness: f64, beams: &[Beam]) -> Self {
+        let normal = DVec3::from(site.normal);
+        let mut source = Self { cosine: 1.0, ..Self::default() };
+        let (mut sum, mut slanted) = (0.0, 0.0);
+        // Σ power, displacement, curvature · sideways², curvature.
+        let mut strata = [[(0.0, DVec3::ZERO, 0.0, 0.0); 3]; COUNT];
+        for beam in beams {
+            let bend = beam.curvature(thickness);
+            let sideways = (1.0 - beam.cosine * beam.cosine).max(0.0);
+            for (k, channel) in medium.iter().enumerate() {
+                let entered = beam.irradiance[k] * (-channel.extinction * beam.crossed).exp();
+                let Strata { depths, share } = Strata::new(channel.extinction * beam.chord);
+                source.irradiance[k] += entered;
+                (sum, slanted) = (sum + entered, slanted + entered * beam.cosine);
+                for (stratum, depth) in strata.iter_mut().zip(depths) {
+                    let way = depth / channel.extinction;
+                    let power = channel.albedo * entered * share * site.area / COUNT as f64;
+                    let (total, place, bent, bends) = &mut stratum[k];
+                    *total += power;
+                    *place += beam.direction * (way * power);
+                    *bent += bend * way * way * sideways * power;
+                    *bends += bend * power;
+                }
+            }
+        }
+        if sum > 0.0 {
+            source.cosine = slanted / sum;
+        }
+        for (stratum, sums) in strata.iter().enumerate() {
+            for (k, &(power, place, bent, bends)) in sums.iter().enumerate() {
+                source.power[stratum][k] = power;
+                source.place[stratum][k] = site.position.into();
+                if power > 0.0 {
+                    let mean = place / power;
+                    let deep = -normal.dot(mean);
+                    let sideways = (mean + normal * deep).length_squared();
+                    // Points beside the mean are less deep under a curved surface than it.
+                    let lift = ((bent - bends * sideways) / power).clamp(0.0, (0.5 * deep).max(0.0));
+                    let depth = (deep - lift).max(0.0);
+                    let extinction = medium[k].extinction;
+                    let shift = (hopf_shift(depth * extinction) / extinction).min(0.9 * depth);
+                    source.place[stratum][k] += mean + normal * (lift + shift);
+                }
+            }
+        }
+        source
+    }
+}
+
+impl Beam {
+    /// Half the curvature of the surface, 1/mm, from how much shorter the chord is than under a plane: on a sphere, 1/2R.
+    fn curvature(&self, thickness: f64) -> f64 {
+        if self.chord <= 0.0 || thickness <= 0.0 {
+            return 0.0;
+        }
+        let sideways = 1.0 - self.cosine * self.cosine;
+        if sideways < 1e-3 {
+            return 1.0 / thickness;
+        }
+        let short = (1.0 - self.chord * self.cosine / thickness).clamp(0.0, 1.0);
+        self.cosine * short / (self.chord * sideways)
+    }
+}
+
+/// A ray that ends at an optical depth, in strata of equal power.
+pub(super) struct Strata {
+    /// Mean depths, in mean free paths.
+    pub depths: [f64; COUNT],
+    /// What is used up.
+    pub share: f64,
+}
+
+impl Strata {
+    pub fn new(end: f64) -> Self {
+        let share = -(-end).exp_m1();
+        let count = COUNT as f64;
+        if end < 1e-3 {
+            return Self { depths: std::array::from_fn(|k| (k as f64 + 0.5) / count * end), share };
+        }
+        let edge = |k: usize| if k == COUNT { end } else { -(-(k as f64) / count * share).ln_1p() };
+        // −∫ x e^−x.
+        let integral = |x: f64| if x < 700.0 { (1.0 + x) * (-x).exp() } else { 0.0 };
+        let depths = std::array::from_fn(|k| (integral(edge(k)) - integral(edge(k + 1))) * count / share);
+        Self { depths, share }
+    }
+}
+
+/// φ_Q at a point, W/m².
+pub(super) fn potential(
+    medium: &[Coefficients; 3],
+    sites: &[Site],
+    sources: &[Source],
+    at: DVec3,
+) -> [f64; 3] {
+    let mut sum = [0.0; 3];
+    for (site, source) in sites.iter().zip(sources).filter(|(site, _)| site.area > 0.0) {
+        for (power, place) in source.power.iter().zip(&source.place) {
+            for k in (0..3).filter(|&k| power[k] > 0.0) {
+                let disc = Disc { centre: place[k], normal: site.normal.into(), area: site.area };
+                sum[k] += power[k] * disc.potential(&medium[k], at);
+            }
+        }
+    }
+    sum
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn strata_keep_the_mean_depth() {
+        for end in [1e-5, 1e-2, 0.5, 3.0, 50.0, 1e9] {
+            let Strata { depths, share } = Strata::new(end);
+            let mean = depths.iter().sum::<f64>() / COUNT as f64;
+            // ∫ x e^−x over what is used up; a short ray's is its middle.
+            let exact =
+                if end < 1e-2 { end * (0.5 - end / 12.0) } else { 1.0 - end / end.min(700.0).exp_m1() };
+            assert!((mean / exact - 1.0).abs() < 1e-3, "{end}: {mean} {exact}");
+            assert!((share - (1.0 - (-end).exp())).abs() < 1e-12 && depths.is_sorted());
+        }
+    }
+}
