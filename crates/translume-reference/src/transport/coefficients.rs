@@ -6,6 +6,9 @@ use crate::path::Volume;
 /// Optical depth between Milne's extrapolated end point, .7104, and that of the diffusion condition, 2/3.
 const MILNE: f64 = 1.065;
 
+/// What neither scatters nor absorbs is taken to absorb this much, 1/mm.
+const CLEAR: f64 = 1e-12;
+
 /// One channel of a medium.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Coefficients {
@@ -26,9 +29,10 @@ impl Coefficients {
         let reflected = diffuse_reflectance_fit(volume.ior);
         let robin = (1.0 - reflected) / (2.0 * (1.0 + reflected) * MILNE);
         std::array::from_fn(|k| {
-            let extinction = volume.sigma_s[k] + volume.sigma_a[k];
-            let diffusion = (2.0 * volume.sigma_a[k] + volume.sigma_s[k]) / (3.0 * extinction * extinction);
-            let decay = (volume.sigma_a[k] / diffusion).sqrt();
+            let absorption = volume.sigma_a[k].max(CLEAR - volume.sigma_s[k]);
+            let extinction = volume.sigma_s[k] + absorption;
+            let diffusion = (2.0 * absorption + volume.sigma_s[k]) / (3.0 * extinction * extinction);
+            let decay = (absorption / diffusion).sqrt();
             Self { extinction, albedo: volume.sigma_s[k] / extinction, diffusion, decay, robin }
         })
     }

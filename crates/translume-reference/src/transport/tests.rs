@@ -117,3 +117,30 @@ fn fluence_is_continuous() {
         }
     }
 }
+
+/// What neither scatters nor absorbs, what only does one of both, and what is hardly there.
+#[test]
+fn hard_media_stay_finite() {
+    let lights = [sun(), sky(true)];
+    for (sigma_s, sigma_a) in
+        [([0.0; 3], [0.0; 3]), ([0.0, 0.0, 1e3], [1.0, 1e3, 0.0]), ([1e-6, 1e-3, 1e3], [0.0; 3])]
+    {
+        for ior in [0.8, 1.0, 1.5] {
+            let volume = Volume { sigma_s, sigma_a, g: 0.0, ior };
+            let sites = sites(1);
+            let solution = Solution::new(Body { shape: &BALL, volume, lights: &lights }, sites.clone(), 4);
+            let layers = solution.layers();
+            for site in 0..sites.len() {
+                let seen = Seen { sites: vec![(site, 1.0)], cosine: 0.5, chord: 10.0, far: Some((0, 0.5)) };
+                let radiance = layers.radiance(&seen);
+                let exitance = solution.exitance(site);
+                // As much leaves as enters, π of either light, and a part of it for a site so coarse.
+                let is_sound = |value: f64| value.is_finite() && (-0.2..20.0).contains(&value);
+                assert!(
+                    radiance.into_iter().chain(exitance).all(is_sound),
+                    "{sigma_s:?} {ior}: {radiance:?} {exitance:?}"
+                );
+            }
+        }
+    }
+}

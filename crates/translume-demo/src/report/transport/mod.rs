@@ -65,9 +65,9 @@ fn scene(
     let stage = Stage::open(source)?;
     let told = |what: &str| bar.set_message(format!("{}: {what}", stage.name));
     let patience = if arguments.quick {
-        Patience { samples: 0, noise: 0.1, most: Duration::from_secs(3) }
+        Patience { samples: 250, noise: 0.1, most: Duration::from_secs(3) }
     } else {
-        Patience { samples: 0, noise: 0.01, most: Duration::from_secs(45) }
+        Patience { samples: 250, noise: 0.01, most: Duration::from_secs(30) }
     };
     let truths = Truths::new(&stage, &[], patience, &told)?;
     let Some(traced) = &truths.traced else {
