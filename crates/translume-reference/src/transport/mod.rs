@@ -7,16 +7,16 @@
 //!
 //! | module | what it does |
 //! | --- | --- |
-//! | [`coefficients`] | D, σ, c_G of a channel, and what diffusion makes of them |
-//! | [`rays`] | what is inside of a straight line, chords, how much of the sky of a site is body |
-//! | [`source`] | light that entered a site, as points in the volume: φ_Q |
-//! | [`disc`] | G and H averaged over a site |
-//! | [`equation`] | the sums of the equation, and light that leaves a concave body and enters it again: Γ |
-//! | [`krylov`] | its solution in a few applications |
-//! | [`layer`] | radiance from φ under the surface |
-//! | [`single`] | light that scattered once |
-//! | [`shortfall`] | what diffusion lacks where light enters, from the exact half-space |
-//! | [`picture`] | the camera's picture |
+//! | `coefficients` | D, σ, c_G of a channel, and what diffusion makes of them |
+//! | `rays` | what is inside of a straight line, chords, how much of the sky of a site is body |
+//! | `source` | light that entered a site, as points in the volume: φ_Q |
+//! | `disc` | G and H averaged over a site |
+//! | `equation` | the sums of the equation, and light that leaves a concave body and enters it again: Γ |
+//! | `krylov` | its solution in a few applications |
+//! | `layer` | radiance from φ under the surface |
+//! | `single` | light that scattered once |
+//! | `shortfall` | what diffusion lacks where light enters, from the exact half-space |
+//! | `picture` | the camera's picture |
 //!
 //! Three things are ours and make it right with few sites (figures in `docs/accuracy.md`):
 //!
