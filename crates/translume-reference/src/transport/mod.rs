@@ -18,9 +18,9 @@
 //! | `shortfall` | what diffusion lacks where light enters, from the exact half-space |
 //! | `picture` | the camera's picture |
 //!
-//! Three things are ours and make it right with few sites (figures in `docs/accuracy.md`):
+//! Three things are ours and make it right with few sites (figures in `docs/method.md`):
 //!
-//! * **Every site is a disc**, for near receivers by quadrature, on its axis in closed form. Sites may then be larger than a mean free path: where
+//! * **Every site is a disc**, in closed form along lines through a near receiver's foot. Sites may then be larger than a mean free path: where
 //!   that is short the equation becomes the half-space's, as it should.
 //! * **Depths are shifted by Hopf's function.** Diffusion extrapolates to zero .7104 mean free paths outside, which holds deep inside; near the
 //!   surface the exact field is that of a shallower depth by .7104 − q(z). By reciprocity that holds for sources as well as for what leaves, and
