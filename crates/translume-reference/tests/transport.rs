@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use translume_mesh::{Atlas, AtlasOptions, Mesh, builtin};
+use translume_mesh::{Atlas, AtlasError, AtlasOptions, Mesh, builtin};
 use translume_reference::composite::{Camera, Exit, Picture, look_up, render};
 use translume_reference::gather::{Gather, Source};
 use translume_reference::path::{Ball, PathTracer, Volume};
@@ -20,12 +20,12 @@ struct Subject {
     surface: Surface,
 }
 
-fn sphere() -> Subject {
+fn sphere() -> Result<Subject, AtlasError> {
     let mesh = builtin::sphere([0.0; 3], RADIUS as f32, 4);
-    let atlas = Atlas::build(&mesh, &AtlasOptions { size: 40, ..Default::default() }, |_| true).unwrap();
+    let atlas = Atlas::build(&mesh, &AtlasOptions { size: 40, ..Default::default() }, |_| true)?;
     let wide = |values: &[[f32; 3]]| values.iter().map(|v| v.map(f64::from)).collect();
     let surface = Surface::new(wide(&mesh.positions), wide(&mesh.normals), mesh.triangles.clone(), false);
-    Subject { mesh, atlas, surface }
+    Ok(Subject { mesh, atlas, surface })
 }
 
 impl Subject {
@@ -89,7 +89,7 @@ fn filled(picture: &Picture) -> Vec<bool> {
 
 #[test]
 fn a_white_furnace_is_white() {
-    let subject = sphere();
+    let subject = sphere().expect("a sphere unwraps");
     let volume = Volume { sigma_s: [0.7, 1.2, 2.0], sigma_a: [0.0; 3], g: 0.0, ior: 1.0 };
     let lights = [Light::Ambient { radiance: [1.0; 3], axis: [0.0, 1.0, 0.0], half_angle: PI, shadow: true }];
     for (tier, bound) in [(Tier::Boundary, 0.04), (Tier::Layers, 0.08)] {
@@ -108,7 +108,7 @@ fn a_white_furnace_is_white() {
 
 #[test]
 fn closer_to_paths_than_a_dipole() {
-    let subject = sphere();
+    let subject = sphere().expect("a sphere unwraps");
     let volume = Volume {
         sigma_s: [0.571_577, 2.000_417, 4.905_779],
         sigma_a: [0.005_774, 0.040_825, 0.258_199],
