@@ -83,19 +83,23 @@ pub fn render(
     exitance: impl Fn(&Hit) -> [f64; 3] + Sync,
 ) -> Picture {
     let diffuse = if exit.normalised { hemispherical_transmittance(exit.eta) } else { 1.0 };
-    let pixel = |index: usize| {
+    expose(camera, |index| {
         let direction = camera.direction(index % camera.width, index / camera.width);
         let hit = surface.closest_hit(camera.eye, direction)?;
         let cos = view_cosine(surface, &hit, direction.into());
         let factor = transmittance(exit.eta, cos) / (PI * diffuse);
-        Some(scale(exitance(&hit), factor).map(|value| value as f32))
-    };
-    let pixels: Vec<Option<[f32; 3]>> =
-        (0..camera.width * camera.height).into_par_iter().map(pixel).collect();
+        Some(scale(exitance(&hit), factor))
+    })
+}
+
+/// The picture of what the caller tells for the number of every pixel; `None` where nothing is.
+pub(crate) fn expose(camera: &Camera, radiance: impl Fn(usize) -> Option<[f64; 3]> + Sync) -> Picture {
+    let pixels: Vec<Option<[f64; 3]>> =
+        (0..camera.width * camera.height).into_par_iter().map(&radiance).collect();
     Picture {
         width: camera.width,
         height: camera.height,
-        radiance: pixels.iter().map(|pixel| pixel.unwrap_or_default()).collect(),
+        radiance: pixels.iter().map(|pixel| pixel.unwrap_or_default().map(|value| value as f32)).collect(),
         mask: pixels.iter().map(Option::is_some).collect(),
     }
 }

@@ -9,7 +9,7 @@ use crate::lights::Region;
 const PROBES: u32 = 6;
 
 /// Parts of a ray from outside that are inside.
-pub(super) fn segments(crossings: &[Crossing], direction: DVec3) -> Vec<[f64; 2]> {
+pub(crate) fn segments(crossings: &[Crossing], direction: DVec3) -> Vec<[f64; 2]> {
     let mut segments = Vec::new();
     let mut since = None;
     for crossing in crossings {

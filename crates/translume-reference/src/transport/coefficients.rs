@@ -37,6 +37,16 @@ impl Coefficients {
         })
     }
 
+    /// What crosses the surface outwards, less what comes in: c_G φ − 4 c_G Γ.
+    pub fn net_flux(&self, fluence: f64, returning: f64) -> f64 {
+        self.robin * (fluence - 4.0 * returning)
+    }
+
+    /// What crosses the surface outwards: c_G φ − (4 c_G − 1) Γ.
+    pub fn exitance(&self, fluence: f64, returning: f64) -> f64 {
+        self.robin * fluence - (4.0 * self.robin - 1.0) * returning
+    }
+
     /// Fluence at a distance from a source of unit power: G, 1/mm².
     pub fn potential(&self, r: f64) -> f64 {
         (-self.decay * r).exp() / (4.0 * std::f64::consts::PI * self.diffusion * r)
@@ -58,4 +68,9 @@ impl Coefficients {
 /// exponential that has its end, 1/√3 at the surface, and the moments √(1/3)·H(μ) − μ of the exact solution within .002 for μ from .5 to 1.
 pub(super) fn hopf_shift(depth: f64) -> f64 {
     0.1331 * (-3.4 * depth.max(0.0)).exp()
+}
+
+/// Optical depth that a source is moved to by that; it stays inside.
+pub(super) fn hopf_depth(depth: f64) -> f64 {
+    depth - hopf_shift(depth).min(0.9 * depth)
 }

@@ -42,8 +42,7 @@ impl Equation {
             .par_iter()
             .map(|patch| {
                 let (_, closure) = equation.sums(patch.disc.centre, &nothing, &nothing);
-                let forms = patches.iter().filter(|other| other.disc.area > 0.0);
-                (closure, forms.map(|other| form_factor(&patch.disc, &other.disc)).sum())
+                (closure, patches.iter().map(|other| form_factor(&patch.disc, &other.disc)).sum())
             })
             .collect();
         for (patch, (closure, seen)) in equation.patches.iter_mut().zip(measured) {
@@ -70,7 +69,7 @@ impl Equation {
         let lit = self.patches.iter().zip(fluence.iter().zip(returning));
         for (patch, (fluence, returning)) in lit.filter(|(patch, _)| patch.disc.area > 0.0) {
             let disc = &patch.disc;
-            let leaving = |k: usize| self.medium[k].robin * (fluence[k] - 4.0 * returning[k]);
+            let leaving = |k: usize| self.medium[k].net_flux(fluence[k], returning[k]);
             match disc.seen_from(at) {
                 Sight::Far(r) => {
                     let along = disc.normal.dot(disc.centre - at);
@@ -111,10 +110,7 @@ impl Equation {
         }
         for _ in 0..RETURNS {
             let exitance = |(fluence, returning): (&[f64; 3], &[f64; 3])| -> [f64; 3] {
-                std::array::from_fn(|k| {
-                    let c = self.medium[k].robin;
-                    c * fluence[k] - (4.0 * c - 1.0) * returning[k]
-                })
+                std::array::from_fn(|k| self.medium[k].exitance(fluence[k], returning[k]))
             };
             let leaving: Vec<[f64; 3]> = fluence.iter().zip(&returning).map(exitance).collect();
             let row = |patch: &Patch| {

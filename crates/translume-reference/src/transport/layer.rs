@@ -1,7 +1,7 @@
 //! Radiance from what is known of φ under the surface.
 //!
 //! L = α'/4π ∫ σ_t e^−σ_t s φ(s) ds along the ray of view inside. φ below a site is a parabola of the depth, through its value and its slope at
-//! the surface (the boundary condition gives that) and its value a little below, less −p e^−z/μ₀σ_t, the particular solution of the light that
+//! the surface (the boundary condition gives that) and its value a little below, less p e^−σ_t z/μ₀, the particular solution of the light that
 //! enters there. A ray is z(s) = μs (1 − βs/L) deep, L its chord and β = 1 − Lμ/thickness, which is exact on a sphere and in a slab. Towards its
 //! other end φ goes over into the parabola of the site there, by the geometric mean, as it varies by orders of magnitude.
 
@@ -37,7 +37,7 @@ pub(super) struct Parabola {
     surface: f64,
     slope: f64,
     curve: f64,
-    /// Of the light that enters: p, and 1/μ₀σ_t.
+    /// Of the light that enters: p, and σ_t/μ₀.
     beam: f64,
     rate: f64,
     reach: f64,
@@ -57,7 +57,7 @@ impl Parabola {
         let rate = medium.extinction / cosine.max(0.05);
         let beam = medium.albedo * irradiance / (medium.diffusion * rate);
         let surface = fluence[0] + beam;
-        let flux = medium.robin * (fluence[0] - 4.0 * returning);
+        let flux = medium.net_flux(fluence[0], returning);
         let mut own = Self { surface, slope: 0.0, curve: 0.0, beam, rate, reach: REACH * depth, thickness };
         if depth * medium.extinction > 1e-3 {
             own.slope = flux / medium.diffusion - beam * rate;

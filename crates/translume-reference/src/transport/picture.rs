@@ -1,7 +1,6 @@
 //! The camera's picture of a solution whose sites are the texels of an atlas.
 
 use glam::DVec3;
-use rayon::prelude::*;
 use std::f64::consts::PI;
 use translume_mesh::Atlas;
 
@@ -10,7 +9,7 @@ use super::shortfall::shortfall;
 use super::single::single;
 use super::source::Lamps;
 use super::{Layers, Solution};
-use crate::composite::{Camera, Picture, texels_at, view_cosine};
+use crate::composite::{Camera, Picture, expose, texels_at, view_cosine};
 use crate::dice::Dice;
 use crate::fresnel::{hemispherical_transmittance, transmittance};
 use crate::{Hit, Surface};
@@ -44,20 +43,12 @@ pub fn picture(
         lamps: Lamps::new(solution.body.lights),
         boost: std::array::from_fn(|k| 1.0 + shortfall(&solution.medium[k])),
     };
-    let pixel = |index: usize| {
+    expose(camera, |index| {
         let direction =
             DVec3::from(camera.direction(index % camera.width, index / camera.width)).normalize_or_zero();
         let hit = surface.closest_hit(camera.eye, direction.to_array())?;
-        Some(eye.radiance(camera, &hit, direction, index).map(|value| value as f32))
-    };
-    let pixels: Vec<Option<[f32; 3]>> =
-        (0..camera.width * camera.height).into_par_iter().map(pixel).collect();
-    Picture {
-        width: camera.width,
-        height: camera.height,
-        radiance: pixels.iter().map(|pixel| pixel.unwrap_or_default()).collect(),
-        mask: pixels.iter().map(Option::is_some).collect(),
-    }
+        Some(eye.radiance(camera, &hit, direction, index))
+    })
 }
 
 struct Eye<'a> {
@@ -88,7 +79,8 @@ impl Eye<'_> {
         };
         let mut dice = Dice::stream(3, index as u64);
         let ray = (DVec3::from(camera.eye), direction);
-        let chord = rays.segments(ray.0, ray.1, f64::INFINITY).first().map_or(0.0, |[from, to]| to - from);
+        let segments = rays.segments(ray.0, ray.1, f64::INFINITY);
+        let chord = segments.first().map_or(0.0, |[from, to]| to - from);
         let place =
             DVec3::from(self.surface.point(hit.triangle, hit.barycentric)) + direction * (10.0 * rays.offset);
         let far = self.surface.closest_hit(place.to_array(), direction.to_array()).and_then(|far| {
@@ -97,7 +89,7 @@ impl Eye<'_> {
             Some((site, normal.dot(direction).max(GRAZING)))
         });
         let many = layers.radiance(&Seen { sites, cosine: cosine.max(GRAZING), chord, far });
-        let once = single(&self.solution.medium, rays, &self.lamps, ray, &mut dice);
+        let once = single(&self.solution.medium, rays, &self.lamps, ray, &segments, &mut dice);
         std::array::from_fn(|k| many[k] + self.boost[k] * once[k])
     }
 }

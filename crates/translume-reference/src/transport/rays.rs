@@ -4,6 +4,7 @@ use glam::DVec3;
 
 use super::Site;
 use crate::lights::strata::{Strata, hemisphere};
+use crate::path::way::segments;
 use crate::path::{Crossing, Shape};
 
 /// Rays start this share of the body's diagonal off the surface.
@@ -28,21 +29,15 @@ impl<'a> Rays<'a> {
         let mut crossings: Vec<Crossing> = Vec::new();
         self.shape.crossings(origin, direction, &mut |crossing| crossings.push(crossing));
         crossings.sort_by(|a, b| a.t.total_cmp(&b.t));
-        let starts_inside = crossings.first().is_some_and(|crossing| crossing.leaves(direction));
-        let mut since = starts_inside.then_some(0.0);
-        let mut segments = Vec::new();
-        for crossing in crossings.iter().take_while(|crossing| crossing.t < most) {
-            match (crossing.leaves(direction), since) {
-                (false, None) => since = Some(crossing.t),
-                (true, Some(from)) => {
-                    segments.push([from, crossing.t]);
-                    since = None;
-                }
-                _ => {}
-            }
+        // Who begins or ends inside comes in or goes out there.
+        if crossings.first().is_some_and(|crossing| crossing.leaves(direction)) {
+            crossings.insert(0, Crossing { t: 0.0, normal: -direction });
         }
-        segments.extend(since.filter(|_| most.is_finite()).map(|from| [from, most]));
-        segments
+        crossings.retain(|crossing| crossing.t < most);
+        if most.is_finite() {
+            crossings.push(Crossing { t: most, normal: direction });
+        }
+        segments(&crossings, direction)
     }
 
     /// How much of a ray is inside, mm.
@@ -69,5 +64,23 @@ impl<'a> Rays<'a> {
         };
         let blocked = Strata::new(SKY, position, 0).points().filter(is_blocked).count();
         blocked as f64 / f64::from(SKY * SKY)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::path::Ball;
+
+    #[test]
+    fn rays_may_begin_and_end_inside() {
+        let ball = Ball { center: [0.0; 3], radius: 2.0 };
+        let rays = Rays::new(&ball, 1.0);
+        let along = |x: f64, most: f64| rays.segments(DVec3::new(x, 0.0, 0.0), DVec3::X, most);
+        assert_eq!(along(-5.0, f64::INFINITY), [[3.0, 7.0]]);
+        assert_eq!(along(-5.0, 4.0), [[3.0, 4.0]]);
+        assert_eq!(along(1.0, f64::INFINITY), [[0.0, 1.0]]);
+        assert_eq!(along(-1.0, 2.0), [[0.0, 2.0]]);
+        assert!(along(3.0, 9.0).is_empty() && along(-5.0, 2.0).is_empty());
     }
 }

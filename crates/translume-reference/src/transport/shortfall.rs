@@ -4,7 +4,7 @@
 //! (Chandrasekhar 1950, §33), R_1 of it after one scattering, and by the model R_m after more. What is lacking, R_H − R_1 − R_m, falls off with
 //! depth as the light that enters does (within 2 % of what a slab of one to three mean free paths lets through), so it is a share ρ of single scattering.
 
-use super::coefficients::{Coefficients, hopf_shift};
+use super::coefficients::{Coefficients, hopf_depth};
 use super::layer::{Depth, Parabola};
 use super::source::Strata;
 
@@ -36,10 +36,7 @@ fn returned_once(albedo: f64, cosine: f64) -> f64 {
 /// R_m: the half-space as the model has it, with its strata and its parabola.
 fn returned_by_diffusion(medium: &Coefficients, cosine: f64) -> f64 {
     let strata = Strata::new(f64::INFINITY);
-    let depths = strata.depths.map(|depth| {
-        let depth = cosine * depth;
-        (depth - hopf_shift(depth).min(0.9 * depth)) / medium.extinction
-    });
+    let depths = strata.depths.map(|depth| hopf_depth(cosine * depth) / medium.extinction);
     let fluence = |z: f64| {
         let each = |depth: f64| medium.albedo / depths.len() as f64 * medium.half_space(z, depth);
         depths.into_iter().map(each).sum::<f64>()

@@ -19,17 +19,18 @@ const DIRECTIONS: u32 = 8;
 /// What a ray has left behind dimmer than this is not worth marching.
 const DIM: f64 = 1e-4;
 
-/// Radiance in each channel along a ray through an index-matched body, W/(m² sr).
+/// Radiance in each channel along a ray through an index-matched body, W/(m² sr); `segments` are its inside parts.
 pub(super) fn single(
     medium: &[Coefficients; 3],
     rays: &Rays<'_>,
     lamps: &Lamps,
     (origin, direction): (DVec3, DVec3),
+    segments: &[[f64; 2]],
     dice: &mut Dice,
 ) -> [f64; 3] {
     let mut sum = [0.0; 3];
     let mut before = 0.0;
-    for [from, to] in rays.segments(origin, direction, f64::INFINITY) {
+    for [from, to] in segments {
         for (k, channel) in medium.iter().enumerate() {
             let left = (-channel.extinction * before).exp();
             let share = -(-channel.extinction * (to - from)).exp_m1();

@@ -6,7 +6,7 @@
 use glam::DVec3;
 
 use super::Site;
-use super::coefficients::{Coefficients, hopf_shift};
+use super::coefficients::{Coefficients, hopf_depth};
 use super::disc::Disc;
 use super::rays::{Rays, SKY};
 use crate::Light;
@@ -157,8 +157,8 @@ impl Source {
                     let lift = ((bent - bends * sideways) / power).clamp(0.0, (0.5 * deep).max(0.0));
                     let depth = (deep - lift).max(0.0);
                     let extinction = medium[k].extinction;
-                    let shift = (hopf_shift(depth * extinction) / extinction).min(0.9 * depth);
-                    source.place[stratum][k] += mean + normal * (lift + shift);
+                    source.place[stratum][k] +=
+                        mean + normal * (lift + depth - hopf_depth(depth * extinction) / extinction);
                 }
             }
         }
