@@ -1,4 +1,4 @@
-// Dual: irradiance → radiant exitance with groups of texels at both ends. Level by level, every receiver takes over the sources its
+// Dual: what sources send, summed up with groups of texels at both ends. Level by level, every receiver takes over the sources its
 // parent left open. A source that is small seen from the receiver, and the receiver from it, is added to the receiver's expansion;
 // otherwise the larger of the two is opened, the source at once, the receiver by leaving the source to its children.
 
@@ -14,14 +14,13 @@ struct Lists {
 
 @group(0) @binding(0) var<uniform> scatter: Dual;
 @group(0) @binding(1) var<storage, read> bounds: array<vec4f>;
-@group(0) @binding(2) var<storage, read> lamps: array<Lamp>;
-@group(0) @binding(3) var<storage, read_write> exitance: array<vec4f>;
-// Of receivers from the second level on, those of the first going straight to `exitance`; of all where vertices or fragments follow.
+// What is summed up, per texel.
+@group(0) @binding(3) var<storage, read_write> sums: array<vec4f>;
+// Of receivers from the second level on, those of the first going straight to `sums`; of all where vertices or fragments follow.
 @group(0) @binding(4) var<storage, read_write> expansions: array<Expansion>;
 // Where each receiver's open sources are in `lists`.
 @group(0) @binding(5) var<storage, read_write> heads: array<u32>;
 @group(0) @binding(6) var<storage, read_write> lists: Lists;
-@group(0) @binding(7) var kernel_table: texture_2d<f32>;
 
 // A second-order expansion errs more across a receiver than the averaged profile does across a source of the same size. At the same cost
 // a weight of 1.5 errs a sixth more, 2.2 as much; the sum of both sizes in place of that of their squares a tenth more.
@@ -68,13 +67,16 @@ fn inner(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: v
     if node >= level_count(scatter.texel_count, scatter.level) { return; }
     let own = receiver_index(scatter.level, node);
     let receiver = bounds[scatter.first_receiver + own].xyz;
+    let place = receiving_place(scatter.level, node, receiver);
+    let near = smooth_square(node << (2u * scatter.level));
     let size = bounds[scatter.first_receiver + own].w;
     if size == NOT_NEEDED { return; }
     var before: Expansion;
     var head = ROOT_HEAD;
     if scatter.level < scatter.start_level {
         let parent = receiver_index(scatter.level + 1u, node / 4u);
-        before = moved(expansions[parent - scatter.first_expansion], receiver - bounds[scatter.first_receiver + parent].xyz);
+        let above = receiving_place(scatter.level + 1u, node / 4u, bounds[scatter.first_receiver + parent].xyz);
+        before = moved_to(expansions[parent - scatter.first_expansion], above, place);
         head = heads[parent];
     }
     var e = before;
@@ -92,9 +94,8 @@ fn inner(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: v
             if w.done { continue; }
             let index = source_index(w.level, w.node);
             let seen = bounds[index];
-            let offset = receiver - seen.xyz;
             let extent = seen.w * seen.w + RECEIVER_WEIGHT * RECEIVER_WEIGHT * size * size;
-            let sight = dot(offset, offset) + scatter.z_r_squared;
+            let sight = distance_square(index, place) + near;
             let small = extent < scatter.theta_squared * sight;
             let limit = select(SOURCE_EXCESS * SOURCE_EXCESS * size * size, scatter.leaf_theta_squared * sight, decides);
             if seen.w * seen.w > limit && w.level > 0u && !small {
@@ -114,13 +115,12 @@ fn inner(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: v
         }
         for (var k = 0u; k < count; k++) {
             let index = notes[note(k, local)];
-            // Derivatives by r² lose their digits where r hardly counts.
-            collect(&e, lamps[index], receiver - bounds[index].xyz, max(0.01 * size * size, scatter.table.least_r2));
+            collect(&e, index, place, size);
         }
         evaluated += count;
     }
     let texels = min(1u << (2u * scatter.level), scatter.texel_count - (node << (2u * scatter.level)));
-    e.evaluations += f32(evaluated) / f32(texels);
+    count_evaluations(&e, f32(evaluated) / f32(texels));
     // Without room for a list nothing is resolved here: the children take over what the parent left.
     if !room {
         atomicAdd(&lists.overflows, 1u);
@@ -133,8 +133,7 @@ fn inner(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: v
         return;
     }
     for (var k = 0u; k < texels; k++) {
-        let texel = node * 4u + k;
-        exitance[texel] = vec4f(leaving(moved(e, bounds[texel].xyz - receiver), lamps[texel].normal), e.evaluations);
+        sums[node * 4u + k] = settled(e, node * 4u + k, place);
     }
 }
 
@@ -144,14 +143,16 @@ fn leaf(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: ve
     let index = item_index(group, groups, local);
     if index >= scatter.texel_count { return; }
     let receiver = bounds[index].xyz;
+    let near = smooth_square(index);
+    let place = texel_place(index, receiver);
     var sum = vec4f(0.0);
     var head = ROOT_HEAD | UNDECIDED;
     if scatter.start_level > 0u {
         if bounds[scatter.first_receiver + receiver_index(1u, index / 4u)].w == NOT_NEEDED {
-            exitance[index] = vec4f(0.0);
+            sums[index] = vec4f(0.0);
             return;
         }
-        sum = exitance[index];
+        sum = sums[index];
         head = heads[index / 4u];
     }
     if (head & UNDECIDED) == 0u {
@@ -162,7 +163,7 @@ fn leaf(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: ve
                 head = packed_node(word);
                 continue;
             }
-            sum += sent(word, index, receiver, lamps[index].normal);
+            sum += arriving(word, index, receiver);
         }
     }
     var w = walk(packed_node(head));
@@ -174,7 +175,7 @@ fn leaf(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: ve
             if w.done { continue; }
             let at = source_index(w.level, w.node);
             let seen = bounds[at];
-            if w.level > 0u && too_large_for_a_texel(seen.w, receiver - seen.xyz) {
+            if w.level > 0u && seen.w * seen.w > scatter.leaf_theta_squared * (distance_square(at, place) + near) {
                 open(&w);
                 continue;
             }
@@ -184,8 +185,7 @@ fn leaf(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: ve
             }
             pass_by(&w);
         }
-        for (var k = 0u; k < count; k++) { sum += sent(notes[note(k, local)], index, receiver, lamps[index].normal); }
+        for (var k = 0u; k < count; k++) { sum += arriving(notes[note(k, local)], index, receiver); }
     }
-    // Where hardly any light comes, an expansion may dip below none.
-    exitance[index] = max(sum, vec4f(0.0)) * vec4f(marked_tint(lamps[index].marks), 1.0);
+    sums[index] = finished(sum, index);
 }

@@ -46,7 +46,8 @@ fn irradiance(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) grou
             count += 1.0;
         }
     }
-    texel_positions[index] = vec4f(pa + side_1 * weights.x + side_2 * weights.y, area);
+    let beyond = pa + side_1 * weights.x + side_2 * weights.y;
+    texel_positions[index] = vec4f(select(beyond, own.position, lighting.on_surface == 1u), area);
     texel_normals[index] = vec4f(normal, least);
     texel_irradiance[index] = vec4f(light / count, 0.0);
 }

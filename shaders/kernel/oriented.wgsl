@@ -42,7 +42,7 @@ fn sent(source: u32, own: u32, receiver: vec3f, normal: vec3f) -> vec4f {
 }
 
 // Adds what one source sends to the receivers about a point `d` from it.
-fn collect(e: ptr<function, Expansion>, lamp: Lamp, d: vec3f, least_r2: f32) {
+fn collect_lamp(e: ptr<function, Expansion>, lamp: Lamp, d: vec3f, least_r2: f32) {
     for (var k = 0u; k < 2u; k++) {
         let o = offsets(scatter.terms[k], lamp, d);
         let jet = jet_of_term(o, lamp, lamp.spread, least_r2);

@@ -102,3 +102,8 @@ fn size_of(spread: f32, radius: f32) -> f32 {
 fn disc_spread(area: f32) -> f32 {
     return sqrt(area * 0.15915494);
 }
+
+// Nodes of a level of the tree; level 0 is the texels.
+fn level_count(texel_count: u32, level: u32) -> u32 {
+    return ((texel_count - 1u) >> (2u * level)) + 1u;
+}

@@ -69,16 +69,6 @@ fn profile_jet(table: KernelTable, texels: texture_2d<f32>, r2: f32, s2: f32, fa
     return Jet(value, value * first / r2, value * (first * first + second - first) / r2 / r2);
 }
 
-// A source off the surface.
-struct Term {
-    // How far below the surface, along its own normal, a source lies, RGB, mm.
-    depth: vec3f,
-    padding0: u32,
-    // What it counts, RGB.
-    weight: vec3f,
-    padding1: u32,
-}
-
 // From sources to a receiver, RGB, component by component, mm: each channel may have its source elsewhere.
 struct Offsets {
     x: vec3f,

@@ -86,7 +86,8 @@ struct Gather {
     direction_count: u32,
     // k of the gain of entry 1/(1 - k (1 - cosine inside)), per channel; 0 where all that enters counts alike.
     slant: vec3f,
-    padding: u32,
+    // 1 where texels beside a chart stand on it: discs that send must be where the surface is.
+    on_surface: u32,
     // Environments that are seen from everywhere, and those that the body shadows, as `environment_irradiance` takes them.
     open_sky: array<vec4f, 9>,
     shadowed_sky: array<vec4f, 9>,

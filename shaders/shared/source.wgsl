@@ -29,8 +29,3 @@ fn facing(offset: vec3f, lamp: Lamp) -> f32 {
     let along = dot(m.diagonal, offset * offset) + 2.0 * dot(m.mixed, offset.xxy * offset.yzz);
     return min(1.0 - 2.0 * select(0.5, along / r2, r2 > 0.0), 1.0);
 }
-
-// Nodes of a level of the tree; level 0 is the texels.
-fn level_count(texel_count: u32, level: u32) -> u32 {
-    return ((texel_count - 1u) >> (2u * level)) + 1u;
-}

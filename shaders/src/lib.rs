@@ -29,7 +29,20 @@ macro_rules! scatter {
             "shared/cluster.wgsl",
             "shared/kernel_table.wgsl",
             "shared/source.wgsl",
+            "shared/term.wgsl",
             "shared/expansion.wgsl",
+            $($file),+
+        )
+    };
+}
+
+macro_rules! transport {
+    ($name:literal, $($file:literal),+) => {
+        shader!(
+            $name,
+            "shared/dispatch.wgsl",
+            "shared/cluster.wgsl",
+            "shared/diffusion.wgsl",
             $($file),+
         )
     };
@@ -94,10 +107,58 @@ pub const SCATTER: Shader = scatter!("scatter", "kernel/chord.wgsl", "scatter.wg
 pub const SCATTER_ORIENTED: Shader = scatter!("scatter, oriented", "kernel/oriented.wgsl", "scatter.wgsl");
 /// Irradiance → radiant exitance with groups of texels at both ends.
 pub const DUAL: Shader =
-    scatter!("dual", "shared/lists.wgsl", "shared/walk.wgsl", "kernel/chord.wgsl", "dual.wgsl");
+    scatter!("dual", "shared/lists.wgsl", "shared/walk.wgsl", "kernel/chord.wgsl", "shared/exitance_sum.wgsl", "dual.wgsl");
 /// The same with sources off the surface, whose flux leaves.
 pub const DUAL_ORIENTED: Shader =
-    scatter!("dual, oriented", "shared/lists.wgsl", "shared/walk.wgsl", "kernel/oriented.wgsl", "dual.wgsl");
+    scatter!("dual, oriented", "shared/lists.wgsl", "shared/walk.wgsl", "kernel/oriented.wgsl", "shared/exitance_sum.wgsl", "dual.wgsl");
+/// Texels → their tree of discs, for the boundary solver.
+pub const SITES: Shader = shader!(
+    "sites",
+    "shared/dispatch.wgsl",
+    "shared/cluster.wgsl",
+    "shared/shape.wgsl",
+    "shared/node.wgsl",
+    "transport/sites.wgsl"
+);
+/// Light that entered → where it scatters first.
+pub const SOURCE: Shader = transport!(
+    "source",
+    "shared/shape.wgsl",
+    "shared/fresnel.wgsl",
+    "shared/lights.wgsl",
+    "shared/node.wgsl",
+    "shared/ray.wgsl",
+    "transport/source.wgsl"
+);
+/// What texels send, summed up their tree.
+pub const MERGE: Shader = transport!("merge", "shared/shape.wgsl", "transport/merge.wgsl");
+/// Both → fluence, with groups of texels at both ends.
+pub const POTENTIAL: Shader = transport!(
+    "potential",
+    "shared/shape.wgsl",
+    "shared/kernel_table.wgsl",
+    "shared/term.wgsl",
+    "shared/lists.wgsl",
+    "shared/walk.wgsl",
+    "kernel/potential.wgsl",
+    "dual.wgsl"
+);
+/// What leaves a concave body → what comes in again.
+pub const RETURNING: Shader = transport!("returning", "shared/shape.wgsl", "transport/returning.wgsl");
+/// The boundary equation's next try.
+pub const KRYLOV: Shader = transport!("krylov", "shared/shape.wgsl", "transport/krylov.wgsl");
+/// Fluence → radiant exitance.
+pub const LAYER: Shader =
+    transport!("layer", "shared/shape.wgsl", "shared/parabola.wgsl", "transport/layer.wgsl");
+/// The same as it is seen from the eye.
+pub const PICTURE: Shader = transport!(
+    "picture",
+    "shared/parabola.wgsl",
+    "shared/lights.wgsl",
+    "shared/node.wgsl",
+    "shared/ray.wgsl",
+    "transport/picture.wgsl"
+);
 /// What the groups leave for points → radiant exitance of every vertex.
 pub const VERTICES: Shader = scatter!(
     "vertices",
@@ -127,6 +188,7 @@ pub const COMPOSITE_FRAGMENTS: Shader = composite!(
     "shared/cluster.wgsl",
     "shared/kernel_table.wgsl",
     "shared/source.wgsl",
+    "shared/term.wgsl",
     "shared/expansion.wgsl",
     "shared/lists.wgsl",
     "shared/walk.wgsl",
@@ -136,7 +198,7 @@ pub const COMPOSITE_FRAGMENTS: Shader = composite!(
 );
 
 /// Every module, in the order light flows through them.
-pub const ALL: [Shader; 18] = [
+pub const ALL: [Shader; 26] = [
     DEFORM,
     ADOPT,
     NORMALS,
@@ -151,6 +213,14 @@ pub const ALL: [Shader; 18] = [
     DUAL_ORIENTED,
     VERTICES,
     PATTERN,
+    SITES,
+    SOURCE,
+    MERGE,
+    POTENTIAL,
+    RETURNING,
+    KRYLOV,
+    LAYER,
+    PICTURE,
     RESOLVE,
     COMPOSITE,
     COMPOSITE_VERTICES,

@@ -98,6 +98,10 @@ pub struct Render {
     /// Even out charts until every texel holds about the same area of the surface.
     #[arg(long)]
     pub even: bool,
+    /// How light goes through the body: classic (as if it were a half-space around every texel; the default), boundary (diffusion with the boundary that
+    /// the body has, for thin parts and light from behind), or layers (the same, and light leaves as the field under the surface says).
+    #[arg(long, value_name = "NAME")]
+    pub transport: Option<String>,
     /// Diffuse profile: half-space (random walks, tabulated, light by its angle; the default), half-space-diffuse (all light as from all sides), dipole (the paper's formula to the letter), dipole-normalised, dipole-oriented (its sources below and above the surface), better-dipole, photon-beam, normalised-diffusion,
     /// normalised-diffusion-searchlight; a dipole, the better one or photon-beam with -single adds light scattered once; or
     /// a table that `translume profile` wrote, by the name of its .json.

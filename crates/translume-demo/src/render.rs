@@ -156,6 +156,7 @@ fn overrule(scene: &mut Scene, arguments: &Render) -> Result<(), Error> {
     if arguments.tolerance.is_some() || arguments.theta.is_some() {
         (quality.tolerance, quality.theta) = (arguments.tolerance, arguments.theta);
     }
+    put(&mut quality.transport, arguments.transport.clone());
     put(&mut quality.evaluate, arguments.evaluate.clone());
     put(&mut quality.shadow, arguments.shadow);
     put(&mut quality.directions, arguments.directions);
@@ -179,6 +180,7 @@ fn blame(error: Error, arguments: &Render) -> Error {
         "--bend" => arguments.bend.is_some(),
         "--gloss" => arguments.gloss.is_some(),
         "--method" => arguments.method.is_some(),
+        "--transport" => arguments.transport.is_some(),
         "--tolerance" => arguments.tolerance.is_some(),
         "--theta" => arguments.theta.is_some(),
         "--evaluate" => arguments.evaluate.is_some(),

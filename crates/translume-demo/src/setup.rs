@@ -6,7 +6,7 @@ use crate::model::{Model, Watch};
 use crate::motion::Motion;
 use crate::scene::{Scene, SceneCamera, SceneLight};
 use std::path::Path;
-use translume::{BodyDescriptor, Evaluate, Light, Medium, Method, Profile, ShadowOptions};
+use translume::{BodyDescriptor, Evaluate, Light, Medium, Method, Profile, ShadowOptions, Transport};
 use translume_mesh::{Atlas, Mesh};
 
 /// Width of a picture whose scene has no camera.
@@ -70,6 +70,7 @@ pub fn camera(scene: &Scene, subject: &Subject, view: [f32; 2]) -> SceneCamera {
 pub struct Substance {
     pub medium: Medium,
     pub profile: Profile,
+    pub transport: Transport,
     pub method: Method,
     pub evaluate: Evaluate,
     pub shadows: ShadowOptions,
@@ -83,6 +84,7 @@ impl Substance {
         Ok(Self {
             medium: scene.medium()?.unwrap_or_default(),
             profile: quality.profile(directory)?,
+            transport: quality.transport()?,
             method: quality.method()?,
             evaluate: quality.evaluate()?,
             shadows: quality.shadows(),
@@ -92,15 +94,16 @@ impl Substance {
 
     /// Whether a body of one becomes a body of the other by another medium and other shadows.
     pub fn is_like(&self, other: &Self) -> bool {
-        let Self { profile, method, evaluate, mm_per_unit, .. } = other;
-        (&self.profile, &self.method, &self.evaluate, &self.mm_per_unit)
-            == (profile, method, evaluate, mm_per_unit)
+        let Self { profile, transport, method, evaluate, mm_per_unit, .. } = other;
+        (&self.profile, &self.transport, &self.method, &self.evaluate, &self.mm_per_unit)
+            == (profile, transport, method, evaluate, mm_per_unit)
     }
 
     pub fn descriptor<'a>(&self, mesh: &'a Mesh, atlas: &'a Atlas, flat_normals: bool) -> BodyDescriptor<'a> {
         BodyDescriptor {
             medium: self.medium,
             profile: self.profile.clone(),
+            transport: self.transport,
             method: self.method,
             evaluate: self.evaluate,
             mm_per_unit: self.mm_per_unit,

@@ -5,8 +5,10 @@ mod evaluation;
 mod kernel;
 mod memory;
 mod settings;
+mod solver;
 
 use self::kernel::{check_kernel, check_method};
+use self::solver::{Solver, check_transport};
 use crate::boundary::Boundary;
 use crate::bounds::PoseBounds;
 use crate::buffers::{Buffers, Extent};
@@ -94,6 +96,7 @@ pub struct Body {
     greatest_scale: f32,
     plan: Plan,
     pattern: Option<PatternMemory>,
+    solver: Solver,
     model: Mat4,
     /// [`Profile::exit_scale`] of profile and medium: an integral too long for every picture.
     pub(crate) exit_scale: f32,
@@ -150,6 +153,7 @@ impl Body {
 
         let tree = Tree::new(extent.texels);
         check_method(&tree, method, descriptor.evaluate, &device.limits())?;
+        check_transport(&tree, descriptor.transport, method, descriptor.evaluate, &device.limits())?;
         check_kernel(profile, method, descriptor.evaluate)?;
         let standing = Standing::new(mesh, atlas);
         let buffers = Buffers::new(device, mesh, atlas, &tree, &standing);
@@ -195,9 +199,10 @@ impl Body {
             greatest_scale: 1.0,
             plan: Plan::new(atlas, mm_per_unit),
             pattern: None,
+            solver: Solver::new(descriptor.transport),
             model: Mat4::IDENTITY,
-            exit_scale: profile.exit_scale(medium.ior),
-            boundary: Boundary::new(profile, &medium),
+            exit_scale: 1.0,
+            boundary: Boundary::new(profile, &medium, descriptor.transport),
             pose: Pose::rest(&extent),
             next_pose: Pose::rest(&extent),
             host: HostNumbers::new(descriptor.host_vertices, extent.vertices),
@@ -222,6 +227,7 @@ impl Body {
             exitance_view,
             depth_maps,
         };
+        body.renew_surface();
         body.account.check(body.memory().total())?;
         body.note_memory();
         Ok(body)
@@ -321,6 +327,7 @@ impl Body {
         self.refresh_table(queue, frame::diagonal(&corners));
         self.place_evaluation(queue, frame, &corners);
         self.refresh_method(device, queue);
+        self.refresh_solver(device, queue, frame);
         self.note_memory();
         self.draw_shared_depth();
         if self.is_timed {

@@ -1,6 +1,6 @@
 //! The surface as light enters it: how much does from each direction, and how much of that counts.
 
-use crate::{Medium, Profile, fresnel};
+use crate::{Medium, Profile, Transport, fresnel};
 use std::f64::consts::TAU;
 
 /// A smooth dielectric with a gain of entry ([`Profile::slant`]).
@@ -10,11 +10,16 @@ pub(crate) struct Boundary {
     pub eta: f32,
     /// k of each channel; 0 where all that enters counts alike.
     pub slant: [f32; 3],
+    /// Whether texels beside a chart are moved onto it.
+    pub on_surface: bool,
 }
 
 impl Boundary {
-    pub fn new(profile: &Profile, medium: &Medium) -> Self {
-        Self { eta: medium.ior, slant: profile.slant(medium) }
+    pub fn new(profile: &Profile, medium: &Medium, transport: Transport) -> Self {
+        // The solver puts light where it scatters: it has no use for a gain.
+        let on_surface = transport != Transport::Classic;
+        let slant = if on_surface { [0.0; 3] } else { profile.slant(medium) };
+        Self { eta: medium.ior, slant, on_surface }
     }
 
     /// F_t·g of each channel. `cosine`: to the normal outside, 0..1.

@@ -280,7 +280,12 @@ impl Buffers {
         [mesh.iter().map(|buffer| buffer.size()).sum(), atlas.iter().map(|buffer| buffer.size()).sum()]
     }
 
-    pub fn outputs<'a>(&'a self, depth_maps: &'a DepthMaps, dual: Option<&'a DualMemory>) -> Outputs<'a> {
+    pub fn outputs<'a>(
+        &'a self,
+        depth_maps: &'a DepthMaps,
+        dual: Option<&'a DualMemory>,
+        solver: Option<&'a wgpu::Buffer>,
+    ) -> Outputs<'a> {
         Outputs {
             positions: &self.positions,
             normals: &self.normals,
@@ -291,6 +296,7 @@ impl Buffers {
             clusters: &self.clusters,
             exitance: &self.exitance,
             vertex_exitance: dual.and_then(DualMemory::vertex_exitance),
+            solver,
             lists: dual.map(|memory| &memory.lists.lists),
         }
     }
@@ -327,6 +333,9 @@ pub struct Outputs<'a> {
     pub exitance: &'a wgpu::Buffer,
     /// With [`Evaluate::PerVertex`](crate::Evaluate::PerVertex): radiant exitance B of each vertex, RGB, and kernel evaluations.
     pub vertex_exitance: Option<&'a wgpu::Buffer>,
+    /// With [`Transport::Boundary`](crate::Transport::Boundary) and beyond: where the solver is, in words of four bytes. From the 24th on, counted
+    /// from 0, the share of the light that is not explained yet, RGB, as floats; the 31st is how often it found nothing, so that the last good solution stayed.
+    pub solver: Option<&'a wgpu::Buffer>,
     /// Once [`Method::Dual`](crate::Method::Dual) was used: its lists of open sources. The first word is how many words they
     /// would have filled, the second how many groups of receivers found no room. Those do not err, but take longer: their texels
     /// walk the tree on their own.

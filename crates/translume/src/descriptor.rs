@@ -1,7 +1,7 @@
 //! What a body is made of.
 
 use crate::bounds::WEIGHT_SLACK;
-use crate::{Error, Evaluate, Medium, Method, Profile, ShadowOptions};
+use crate::{Error, Evaluate, Medium, Method, Profile, ShadowOptions, Transport};
 use translume_mesh::repair::RepairReport;
 use translume_mesh::{Atlas, Influence, Mesh, Skin};
 
@@ -31,6 +31,8 @@ pub struct BodyDescriptor<'a> {
     pub medium: Medium,
     /// The profile.
     pub profile: Profile,
+    /// How light goes through the body.
+    pub transport: Transport,
     /// How the scatter sum is evaluated.
     pub method: Method,
     /// Memory of [`Method::Dual`] for open sources, in entries of four bytes per texel, 0..=1024; no more than one storage binding
@@ -64,6 +66,7 @@ impl<'a> BodyDescriptor<'a> {
             atlas,
             medium: Medium::default(),
             profile: Profile::default(),
+            transport: Transport::default(),
             method: Method::default(),
             list_entries: 32,
             evaluate: Evaluate::default(),

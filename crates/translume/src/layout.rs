@@ -141,7 +141,7 @@ pub(crate) struct GatherLayout {
     pub filter_side: u32,
     pub direction_count: u32,
     pub slant: [f32; 3],
-    pub padding: u32,
+    pub on_surface: u32,
     pub open_sky: [[f32; 4]; 9],
     pub shadowed_sky: [[f32; 4]; 9],
     pub lights: [LightLayout; MAX_LIGHTS],
@@ -285,6 +285,104 @@ pub(crate) struct ScatterLayout {
     pub padding: [u32; 2],
     pub sources: [[u32; 4]; 4],
     pub terms: [TermLayout; 2],
+}
+
+/// Media and tree as the boundary solver reads them.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub(crate) struct TransportLayout {
+    pub extinction: [f32; 4],
+    pub albedo: [f32; 4],
+    pub diffusion: [f32; 4],
+    pub decay: [f32; 4],
+    pub robin: [f32; 4],
+    pub boost: [f32; 4],
+    pub texel_count: u32,
+    pub top_level: u32,
+    pub eta: f32,
+    pub source_count: u32,
+    pub groups: u32,
+    pub reach_squared: f32,
+    pub padding: [u32; 2],
+    pub eye: [f32; 3],
+    pub padding_2: u32,
+    pub offsets: [[u32; 4]; 4],
+    pub sources: [[u32; 4]; 4],
+}
+
+/// A source's extent.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub(crate) struct ShapeLayout {
+    pub normal: [f32; 3],
+    pub spread: f32,
+    pub moments: [u32; 3],
+    pub area: f32,
+    pub turns: [u32; 3],
+    pub padding: u32,
+}
+
+/// A group of texels that bounds rays and receives.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub(crate) struct NodeLayout {
+    pub centre: [f32; 3],
+    pub radius: f32,
+    pub middle: [f32; 3],
+    pub reach: f32,
+    pub scatter: f32,
+    pub texels: f32,
+    pub spread: f32,
+    pub padding: f32,
+}
+
+/// What a source sends.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub(crate) struct ChargeLayout {
+    pub power: [f32; 4],
+    pub x: [f32; 4],
+    pub y: [f32; 4],
+    pub z: [f32; 4],
+}
+
+/// Where light that entered scatters first.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub(crate) struct StrataLayout {
+    pub direction: [f32; 3],
+    pub cosine: f32,
+    pub ways: [[f32; 4]; 3],
+}
+
+/// φ under a texel.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub(crate) struct ParabolaLayout {
+    pub surface: [f32; 3],
+    pub thickness: f32,
+    pub slope: [f32; 3],
+    pub cosine: f32,
+    pub curve: [f32; 3],
+    pub around: f32,
+    pub beam: [f32; 3],
+    pub padding_0: f32,
+    pub light: [f32; 3],
+    pub padding_1: f32,
+}
+
+/// Where the solver is.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub(crate) struct StateLayout {
+    pub mean: [f32; 4],
+    pub weights: [[f32; 4]; 4],
+    pub scale: [f32; 4],
+    pub residual: [f32; 4],
+    pub next: u32,
+    pub count: u32,
+    pub failed: u32,
+    pub failures: u32,
 }
 
 #[repr(C)]

@@ -66,6 +66,7 @@ mod shadow_view;
 mod stages;
 mod standing;
 mod timings;
+mod transport;
 mod variation;
 
 pub use area_light::{RectangleLight, SphereLight};
@@ -93,6 +94,7 @@ pub use stages::scatter::Method;
 pub use stages::shadow::ShadowView;
 pub use stages::{Stage, StageSet};
 pub use timings::{Clock, FrameTimings};
+pub use transport::Transport;
 pub use variation::Variation;
 
 use std::sync::Arc;

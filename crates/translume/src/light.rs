@@ -288,7 +288,7 @@ mod tests {
 
     /// Without a gain.
     fn cone(cosine: f64, half_angle: f64, eta: f32) -> f64 {
-        cone_irradiance(cosine, half_angle, &Boundary { eta, slant: [0.0; 3] })[0]
+        cone_irradiance(cosine, half_angle, &Boundary { eta, slant: [0.0; 3], on_surface: false })[0]
     }
 
     #[test]

@@ -61,6 +61,7 @@ pub(crate) fn gather(lights: &[Light], body: &GatherBody<'_>) -> Result<Gatherin
     layout.flat_normals = u32::from(body.flat_normals);
     layout.eta = body.boundary.eta;
     layout.slant = body.boundary.slant;
+    layout.on_surface = body.boundary.on_surface.into();
     layout.winding = body.winding;
     layout.filter_side = body.shadows.filter;
     let (mut views, mut owners, mut emitters) = (Vec::new(), Vec::new(), 0);

@@ -32,5 +32,6 @@ mod sky;
 mod stability;
 mod stages;
 mod timings;
+mod transport;
 mod variation;
 mod work;

@@ -4,14 +4,16 @@ use crate::error::Error;
 use crate::profile;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
-use translume::{Evaluate, Gloss, Method, Profile, ShadowOptions};
+use translume::{Evaluate, Gloss, Method, Profile, ShadowOptions, Transport};
 use translume_mesh::{AtlasOptions, ChartSource};
 
 /// Everything that trades error for time. The names are those of the command line.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Quality {
-    /// By name, or the name of a table's .json.
+    /// classic, boundary or layers.
+    pub transport: String,
+    /// By name, or the name of a table's .json. Of classic transport.
     pub profile: String,
     /// dual, tree, all-pairs or pattern.
     pub method: String,
@@ -38,6 +40,7 @@ pub struct Quality {
 impl Default for Quality {
     fn default() -> Self {
         Self {
+            transport: Transport::default().name().to_owned(),
             profile: "half-space".to_owned(),
             method: "dual".to_owned(),
             tolerance: None,
@@ -74,6 +77,23 @@ impl Quality {
     /// The profile, a table's file taken relative to `directory`.
     pub fn profile(&self, directory: &Path) -> Result<Profile, Error> {
         profile::open(&self.profile, directory)
+    }
+
+    /// How light goes through the body. Only dual solves for its boundary, and only at texels.
+    pub fn transport(&self) -> Result<Transport, Error> {
+        let fail = |problem| Err(Error::Option { option: "--transport", problem });
+        let name = self.transport.as_str();
+        let Some(transport) = Transport::ALL.into_iter().find(|transport| transport.name() == name) else {
+            let known = Transport::ALL.map(Transport::name).join(", ");
+            return fail(format!("\"{name}\" is no transport; known are {known}"));
+        };
+        if transport != Transport::Classic && self.method != "dual" {
+            return fail(format!("{name} is not summed up by {}; use dual", self.method));
+        }
+        if transport != Transport::Classic && matches!(self.evaluate.as_str(), "vertex" | "fragment") {
+            return fail(format!("{name} is evaluated per texel, not per {}", self.evaluate));
+        }
+        Ok(transport)
     }
 
     pub fn method(&self) -> Result<Method, Error> {

@@ -57,6 +57,12 @@ pub use picture::{Tier, picture};
 use rays::Rays;
 use source::Source;
 
+/// ρ: by how much single scattering has to count more, so that a half-space in an even light returns Chandrasekhar's albedo.
+#[must_use]
+pub fn shortfall(volume: &Volume) -> [f64; 3] {
+    Coefficients::of(volume).map(|medium| shortfall::shortfall(&medium))
+}
+
 /// A body and its light. Light is shadowed by what it crosses, and goes on through it.
 #[derive(Clone, Copy)]
 pub struct Body<'a> {
@@ -100,6 +106,7 @@ pub struct Solution<'a> {
     thickness: Vec<f64>,
     sources: Vec<Source>,
     equation: Equation,
+    given: Vec<[f64; 3]>,
     fluence: Vec<[f64; 3]>,
     returning: Vec<[f64; 3]>,
     residual: [f64; 3],
@@ -123,7 +130,25 @@ impl<'a> Solution<'a> {
             .collect();
         let (fluence, residual) = krylov::solve(&equation, &given, steps);
         let returning = equation.returning(&fluence);
-        Self { body, medium, rays, sites, thickness, sources, equation, fluence, returning, residual }
+        Self { body, medium, rays, sites, thickness, sources, equation, given, fluence, returning, residual }
+    }
+
+    /// φ_Q at every site, W/m²: what there would be in an endless medium.
+    #[must_use]
+    pub fn given(&self) -> &[[f64; 3]] {
+        &self.given
+    }
+
+    /// c of a site: the share of all directions that is body.
+    #[must_use]
+    pub fn closure(&self, site: usize) -> f64 {
+        self.equation.closure(site)
+    }
+
+    /// Γ at every site, W/m²: what falls on it of what leaves elsewhere.
+    #[must_use]
+    pub fn returning(&self) -> &[[f64; 3]] {
+        &self.returning
     }
 
     /// Fluence of scattered light at every site, W/m².

@@ -131,7 +131,9 @@ impl Body {
                 &self.tree,
             );
         }
-        if pending.contains(Stage::Scatter) {
+        if let Some(solver) = self.solver.take().filter(|_| pending.contains(Stage::Scatter)) {
+            solver.encode(encoder, stages, &self.tree, &mut recording);
+        } else if pending.contains(Stage::Scatter) {
             let mut pass = Pass::begin(encoder, Stage::Scatter, &mut recording);
             let pattern = self.pattern.as_ref().zip(stages.scatter.pattern.get());
             match (&self.dual, pattern, self.method.resolved()) {

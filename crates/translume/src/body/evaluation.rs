@@ -36,9 +36,7 @@ impl Body {
         if self.evaluate != Evaluate::Auto {
             return self.evaluate;
         }
-        let [model_x, model_y, model_z] =
-            [self.model.x_axis, self.model.y_axis, self.model.z_axis].map(|axis| axis.truncate().length());
-        let scale = self.mm_per_unit * model_x.max(model_y).max(model_z);
+        let scale = self.scale();
         Candidates {
             texels: self.extent.texels,
             vertices: self.extent.vertices,
@@ -50,6 +48,13 @@ impl Body {
             corners: corners.map(|corner| corner / self.mm_per_unit),
         }
         .choose()
+    }
+
+    /// Millimetres that a unit of the mesh is at most.
+    pub(super) fn scale(&self) -> f32 {
+        let [x, y, z] =
+            [self.model.x_axis, self.model.y_axis, self.model.z_axis].map(|axis| axis.truncate().length());
+        self.mm_per_unit * x.max(y).max(z)
     }
 
     fn need(&self, view: Option<&View>, corners: &[Vec3; 8]) -> NeedLayout {

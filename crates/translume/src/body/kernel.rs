@@ -1,7 +1,7 @@
 //! What the scatter of a body is made of: kernel table, uniforms, memory.
 
 use super::Body;
-use crate::Error;
+use crate::{Error, Transport};
 use crate::evaluate::Evaluate;
 use crate::profile::{Profile, smooth_length};
 use crate::stages::cluster::Tree;
@@ -75,7 +75,7 @@ impl Body {
             _ => 1.0,
         };
         match self.method.resolved() {
-            Method::Dual { theta } => Some(narrowing * theta),
+            Method::Dual { theta } if self.solver.transport == Transport::Classic => Some(narrowing * theta),
             _ => None,
         }
     }

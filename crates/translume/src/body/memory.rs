@@ -25,7 +25,7 @@ impl Body {
         MemoryUse {
             mesh: mesh + self.host.bytes(),
             atlas: atlas + 16 * pixels,
-            scatter: self.kernel.bytes() + dual + pattern,
+            scatter: self.kernel.bytes() + dual + pattern + self.solver.bytes(),
             shadows: depth + self.depth_maps.bytes() + self.sky.bytes(),
         }
     }
@@ -38,6 +38,7 @@ impl Body {
         if self.points().is_none() {
             self.dual = None;
         }
+        self.solver.forget();
         self.bind_gather(device);
         self.pending = StageSet::default();
         (self.never_prepared, self.method_stale) = (true, true);
@@ -79,6 +80,7 @@ impl Body {
                 then = then - self.own_lists() + ListSizes::new(&self.tree, demand, &self.limits).bytes();
             }
         }
+        then += self.solver_growth();
         if then > now { self.account.check(then) } else { Ok(()) }
     }
 

@@ -2,6 +2,7 @@
 
 use super::Body;
 use super::kernel::{check_kernel, check_method};
+use super::solver::check_transport;
 use crate::boundary::Boundary;
 use crate::buffers::Outputs;
 use crate::evaluate::Evaluate;
@@ -9,7 +10,7 @@ use crate::stages::scatter::Method;
 use crate::stages::visibility::SkyMemory;
 use crate::stages::{Stage, StageSet};
 use crate::variation::{VERTEX_MARK, Variation};
-use crate::{Error, Geometry, Medium, Profile, ShadowOptions, View};
+use crate::{Error, Geometry, Medium, Profile, ShadowOptions, Transport, View, transport};
 
 impl Body {
     /// Changes how finely shadows are computed; the next frame looks anew from every light.
@@ -92,11 +93,35 @@ impl Body {
     }
 
     /// What medium and profile say of how light enters and leaves.
-    fn renew_surface(&mut self) {
-        let boundary = Boundary::new(&self.profile, &self.medium);
+    pub(super) fn renew_surface(&mut self) {
+        let boundary = Boundary::new(&self.profile, &self.medium, self.solver.transport);
         self.surface_stale |= boundary != self.boundary;
         self.boundary = boundary;
-        self.exit_scale = self.profile.exit_scale(self.medium.ior);
+        self.exit_scale = match self.solver.transport {
+            Transport::Classic => self.profile.exit_scale(self.medium.ior),
+            _ => transport::exit_scale(self.medium.ior),
+        };
+    }
+
+    /// Changes how light goes through the body; the next frame scatters anew, and gathers too where the gain of entry is another.
+    ///
+    /// # Errors
+    /// [`Error::Frame`] where the method or the place of evaluation is not the solver's, [`Error::Limit`] where the device cannot hold what it
+    /// remembers.
+    pub fn set_transport(&mut self, transport: Transport) -> Result<(), Error> {
+        check_transport(&self.tree, transport, self.method, self.evaluate, &self.limits)?;
+        self.method_stale |= transport != self.solver.transport;
+        self.solver.transport = transport;
+        self.renew_surface();
+        Ok(())
+    }
+
+    #[doc(hidden)]
+    pub fn debug(&self) -> &[wgpu::Buffer] { self.solver.debug() }
+    /// How light goes through the body.
+    #[must_use]
+    pub fn transport(&self) -> Transport {
+        self.solver.transport
     }
 
     /// Changes how the scatter sum is evaluated; the next frame scatters anew.
@@ -106,6 +131,7 @@ impl Body {
     pub fn set_method(&mut self, method: Method) -> Result<(), Error> {
         method.validate()?;
         check_method(&self.tree, method, self.evaluate, &self.limits)?;
+        check_transport(&self.tree, self.solver.transport, method, self.evaluate, &self.limits)?;
         check_kernel(&self.profile, method, self.evaluate)?;
         self.method_stale |= method != self.method;
         self.method = method;
@@ -118,6 +144,7 @@ impl Body {
     /// [`Error::Frame`] where the method has no points, [`Error::Limit`] where the device cannot hold what it remembers.
     pub fn set_evaluate(&mut self, evaluate: Evaluate) -> Result<(), Error> {
         check_method(&self.tree, self.method, evaluate, &self.limits)?;
+        check_transport(&self.tree, self.solver.transport, self.method, evaluate, &self.limits)?;
         check_kernel(&self.profile, self.method, evaluate)?;
         self.evaluate = evaluate;
         Ok(())
@@ -183,6 +210,6 @@ impl Body {
     /// What the stages wrote, for copies and read-back.
     #[must_use]
     pub fn outputs(&self) -> Outputs<'_> {
-        self.buffers.outputs(&self.depth_maps, self.dual.as_ref())
+        self.buffers.outputs(&self.depth_maps, self.dual.as_ref(), self.solver.state())
     }
 }

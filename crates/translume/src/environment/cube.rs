@@ -8,7 +8,7 @@ impl EnvironmentLight {
     /// row, as WebGPU lays out the layers of a cube texture.
     #[must_use]
     pub fn irradiance_cube(&self, eta: f32, size: u32) -> [Vec<[f32; 3]>; 6] {
-        let factors = self.through(&Boundary { eta, slant: [0.0; 3] });
+        let factors = self.through(&Boundary { eta, slant: [0.0; 3], on_surface: false });
         let coordinate = |k: u32| 2.0 * (k as f32 + 0.5) / size as f32 - 1.0;
         std::array::from_fn(|face| {
             let texels = (0..size).flat_map(|t| (0..size).map(move |s| (s, t)));

@@ -78,7 +78,7 @@ impl EnvironmentLight {
     /// `eta`: index of refraction inside over outside, above 0. `normal`: unit length.
     #[must_use]
     pub fn irradiance(&self, eta: f32, normal: [f32; 3]) -> [f32; 3] {
-        irradiance(&self.through(&Boundary { eta, slant: [0.0; 3] }), normal)
+        irradiance(&self.through(&Boundary { eta, slant: [0.0; 3], on_surface: false }), normal)
     }
 
     /// Radiance from a unit direction as far as nine harmonics know it; negative where they swing below zero.

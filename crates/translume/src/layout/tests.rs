@@ -91,6 +91,8 @@ fn rust_and_wgsl_agree() {
             winding,
             filter_side,
             direction_count,
+            slant,
+            on_surface,
             open_sky,
             shadowed_sky,
             lights,
@@ -160,6 +162,51 @@ fn rust_and_wgsl_agree() {
             offsets,
             sources
         ]
+    );
+    check!(
+        POTENTIAL,
+        "Transport",
+        TransportLayout,
+        [
+            extinction,
+            albedo,
+            diffusion,
+            decay,
+            robin,
+            boost,
+            texel_count,
+            top_level,
+            eta,
+            source_count,
+            groups,
+            reach_squared,
+            eye,
+            offsets,
+            sources
+        ]
+    );
+    check!(POTENTIAL, "Shape", ShapeLayout, [normal, spread, moments, area, turns]);
+    check!(POTENTIAL, "Charge", ChargeLayout, [power, x, y, z]);
+    check!(POTENTIAL, "Strata", StrataLayout, [direction, cosine, ways]);
+    let (_, expansion) = naga_layout(translume_shaders::POTENTIAL.source, "Expansion");
+    assert_eq!(u64::from(expansion), crate::stages::scatter::dual::EXPANSION);
+    check!(
+        SITES,
+        "Node",
+        NodeLayout,
+        [centre, radius, middle, reach, scatter, texels, spread]
+    );
+    check!(
+        PICTURE,
+        "Parabola",
+        ParabolaLayout,
+        [surface, thickness, slope, cosine, curve, around, beam, light]
+    );
+    check!(
+        KRYLOV,
+        "State",
+        StateLayout,
+        [mean, weights, scale, residual, next, count, failed, failures]
     );
     let (members, span) = naga_layout(translume_shaders::COMPOSITE.source, "Composite");
     assert_eq!(members[1], ("eye".to_owned(), offset_of!(CompositeLayout, eye) as u32));

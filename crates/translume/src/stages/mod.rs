@@ -7,12 +7,13 @@ pub(crate) mod gather;
 pub(crate) mod resolve;
 pub(crate) mod scatter;
 pub(crate) mod shadow;
+pub(crate) mod transport;
 pub(crate) mod visibility;
 
 use crate::kernel_texture::KernelTables;
 use crate::memory::Ledger;
 use crate::scratch::Scratch;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// A stage of a frame.
 ///
@@ -132,6 +133,8 @@ pub(crate) struct Stages {
     pub gather: gather::Gather,
     pub cluster: cluster::ClusterStage,
     pub scatter: scatter::Scatter,
+    /// Made for the first body that needs it.
+    pub transport: OnceLock<transport::TransportStage>,
     pub resolve: resolve::Resolve,
     pub scratch: Scratch,
     pub kernel_tables: KernelTables,
@@ -146,6 +149,7 @@ impl Stages {
             gather: gather::Gather::new(device),
             cluster: cluster::ClusterStage::new(device),
             scatter: scatter::Scatter::new(device),
+            transport: OnceLock::new(),
             resolve: resolve::Resolve::new(device),
             scratch: Scratch::new(device, ledger),
             kernel_tables: KernelTables::default(),

@@ -43,9 +43,7 @@ pub(crate) struct DualMemory {
     uniforms: wgpu::Buffer,
     pub lists: Arc<Lists>,
     group: wgpu::BindGroup,
-    start_level: u32,
-    capacity: u32,
-    first_expansion: u32,
+    plan: Plan,
     evaluate: Evaluate,
     pub kind: MediumKind,
     /// Where exitance is evaluated at points.
@@ -54,8 +52,8 @@ pub(crate) struct DualMemory {
 
 /// What is written and read within the stage alone, unless exitance is evaluated at points.
 pub(crate) struct Lists {
-    expansions: wgpu::Buffer,
-    heads: wgpu::Buffer,
+    pub expansions: wgpu::Buffer,
+    pub heads: wgpu::Buffer,
     pub lists: wgpu::Buffer,
 }
 
@@ -185,9 +183,8 @@ impl Dual {
         (tree, demand): (&Tree, Demand),
         lists: Arc<Lists>,
     ) -> DualMemory {
-        let start_level = start_level(tree);
-        let capacity = capacity(tree.counts[0], demand, &device.limits());
-        let uniforms = gpu::uniform_buffer(device, "dual", UNIFORM_STRIDE * u64::from(start_level + 1));
+        let plan = Plan::new(tree, demand, &device.limits());
+        let uniforms = gpu::uniform_buffer(device, "dual", UNIFORM_STRIDE * u64::from(plan.start_level + 1));
         let resources = [
             gpu::uniform_slot::<DualLayout>(&uniforms),
             buffers.bounds.as_entire_binding(),
@@ -207,14 +204,12 @@ impl Dual {
             kernel_table,
         };
         let points = self.points.memory(device, buffers, &field, demand.evaluate);
-        let (evaluate, first_expansion) = (demand.evaluate, first_expansion(tree, demand.evaluate));
+        let evaluate = demand.evaluate;
         DualMemory {
             uniforms,
             lists,
             group,
-            start_level,
-            capacity,
-            first_expansion,
+            plan,
             evaluate,
             kind: MediumKind::default(),
             points,
@@ -236,7 +231,7 @@ impl Dual {
         pass.set_bind_group(&memory.group, &[0]);
         pass.dispatch_workgroups(1, 1);
         let last = u32::from(memory.points.is_some());
-        for level in (last..=memory.start_level).rev() {
+        for level in (last..=memory.plan.start_level).rev() {
             let pipeline = if level > 0 { &self.inner } else { &self.leaf };
             pass.set_pipeline(pipeline.get(memory.kind));
             pass.set_bind_group(&memory.group, &[level * UNIFORM_STRIDE as u32]);
@@ -251,7 +246,7 @@ impl Dual {
 impl DualMemory {
     /// Whether it serves this demand too.
     pub fn serves(&self, demand: Demand, tree: &Tree, limits: &wgpu::Limits) -> bool {
-        self.evaluate == demand.evaluate && self.capacity >= capacity(tree.counts[0], demand, limits)
+        self.evaluate == demand.evaluate && self.plan.capacity >= capacity(tree.counts[0], demand, limits)
     }
 
     /// Bytes, apart from the lists.
@@ -265,6 +260,31 @@ impl DualMemory {
 
     /// One uniform per level of receivers, ready for dynamic offsets.
     pub fn write(&self, queue: &wgpu::Queue, scatter: &ScatterLayout, tree: &Tree, theta: f32) {
+        queue.write_buffer(&self.uniforms, 0, &self.plan.uniforms(scatter, tree, theta));
+    }
+}
+
+/// How a body's tree is walked from both ends.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Plan {
+    /// Level of the coarsest receivers.
+    pub start_level: u32,
+    /// Words of the lists.
+    pub capacity: u32,
+    first_expansion: u32,
+}
+
+impl Plan {
+    pub fn new(tree: &Tree, demand: Demand, limits: &wgpu::Limits) -> Self {
+        Self {
+            start_level: start_level(tree),
+            capacity: capacity(tree.counts[0], demand, limits),
+            first_expansion: first_expansion(tree, demand.evaluate),
+        }
+    }
+
+    /// One uniform per level of receivers, ready for dynamic offsets.
+    pub fn uniforms(&self, scatter: &ScatterLayout, tree: &Tree, theta: f32) -> Vec<u8> {
         let stride = UNIFORM_STRIDE as usize;
         let mut offsets = [[0; 4]; 4];
         for (level, offset) in tree.offsets.iter().enumerate() {
@@ -291,6 +311,6 @@ impl DualMemory {
             };
             slot[..size_of::<DualLayout>()].copy_from_slice(bytemuck::bytes_of(&uniform));
         }
-        queue.write_buffer(&self.uniforms, 0, &bytes);
+        bytes
     }
 }

@@ -1,0 +1,167 @@
+//! The boundary solver of a body: what it remembers, and what of it a frame does.
+
+use super::Body;
+use crate::evaluate::Evaluate;
+use crate::gpu::Pass;
+use crate::stages::cluster::Tree;
+use crate::stages::scatter::Method;
+use crate::stages::scatter::dual::{Demand, ListSizes, Lists};
+use crate::stages::transport::{self as stage, Inputs, Steps, TransportMemory, TransportStage};
+use crate::stages::{Stage, StageSet, Stages};
+use crate::timings::Recording;
+use crate::{Error, Frame, Transport, transport};
+use std::sync::Arc;
+
+/// Frames after the last change that still solve.
+const SETTLING: u32 = 3;
+
+pub(super) struct Solver {
+    pub transport: Transport,
+    memory: Option<TransportMemory>,
+    /// Whether the next frame has nothing to begin with.
+    is_first: bool,
+    /// Frames that still solve although nothing changed.
+    unsettled: u32,
+    steps: Steps,
+}
+
+/// What of the solver a frame records.
+pub(super) struct Recorded<'a> {
+    memory: &'a TransportMemory,
+    steps: Steps,
+    is_first: bool,
+}
+
+impl Solver {
+    pub fn new(transport: Transport) -> Self {
+        Self { transport, memory: None, is_first: true, unsettled: 0, steps: Steps::default() }
+    }
+
+    pub fn bytes(&self) -> u64 {
+        self.memory.as_ref().map_or(0, |memory| memory.bytes() + memory.lists.sizes().bytes())
+    }
+
+    /// Gives back all memory.
+    pub fn forget(&mut self) {
+        *self = Self::new(self.transport);
+    }
+
+    /// What the frame that is recorded now does.
+    pub fn take(&mut self) -> Option<Recorded<'_>> {
+        let memory = self.memory.as_ref().filter(|_| self.transport != Transport::Classic)?;
+        let steps = self.steps;
+        self.steps.tries = 0;
+        let is_first = self.is_first && steps.tries > 0;
+        self.is_first &= !is_first;
+        Some(Recorded { memory, steps, is_first })
+    }
+
+    pub fn debug(&self) -> &[wgpu::Buffer] { self.memory.as_ref().map_or(&[], |m| &m.debug) }
+    pub fn state(&self) -> Option<&wgpu::Buffer> {
+        self.memory.as_ref().map(TransportMemory::state)
+    }
+}
+
+impl Recorded<'_> {
+    pub fn encode(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        stages: &Stages,
+        tree: &Tree,
+        recording: &mut Recording<'_>,
+    ) {
+        if self.is_first {
+            self.memory.forget(encoder);
+        }
+        if let Some(stage) = stages.transport.get() {
+            let mut pass = Pass::begin(encoder, Stage::Scatter, recording);
+            stage.encode(&mut pass, self.memory, tree, self.steps);
+        }
+    }
+}
+
+impl Body {
+    fn solver_demand(&self) -> Option<Demand> {
+        let Method::Dual { theta } = self.method.resolved() else { return None };
+        let is_solved = self.solver.transport != Transport::Classic;
+        is_solved.then_some(Demand { list_entries: self.list_entries, theta, evaluate: Evaluate::PerTexel })
+    }
+
+    /// Bytes that the next frame's solver takes beyond what it has.
+    pub(super) fn solver_growth(&self) -> u64 {
+        let demand = self.solver_demand().filter(|_| self.solver.memory.is_none());
+        demand.map_or(0, |demand| {
+            stage::bytes(&self.tree) + ListSizes::new(&self.tree, demand, &self.limits).bytes()
+        })
+    }
+
+    /// Makes the solver ready for the frame, and finds out what it has to do.
+    pub(super) fn refresh_solver(
+        &mut self,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        frame: &Frame<'_>,
+    ) {
+        let Some(demand) = self.solver_demand() else {
+            self.solver.forget();
+            return;
+        };
+        let tree = &self.tree;
+        let texel = self.scale() * self.shape.texel;
+        let layout = transport::layout(&self.medium, tree, TransportMemory::groups(tree), texel);
+        let solver = &mut self.solver;
+        solver.memory = solver.memory.take().filter(|memory| memory.serves(demand, tree, &self.limits));
+        let mut changed = self.pending.contains(Stage::Scatter);
+        if solver.memory.is_none() {
+            solver.is_first = true;
+            changed = true;
+        }
+        let stages = &self.stages;
+        let memory = solver.memory.get_or_insert_with(|| {
+            let stage = stages.transport.get_or_init(|| TransportStage::new(device));
+            let lists = Arc::new(Lists::new(device, ListSizes::new(tree, demand, &self.limits)));
+            TransportMemory::new(device, stage, Inputs { buffers: &self.buffers, tree }, demand, lists, layout)
+        });
+        if changed {
+            memory.write(queue, layout, tree, demand.theta);
+        }
+        let eye = frame.view.as_ref().map(|view| view.camera.in_mm(self.mm_per_unit).1);
+        let gathers = solver.transport == Transport::BoundaryLayers && self.medium.ior == 1.0;
+        let seen = gathers && eye.is_some();
+        let elsewhere = eye.is_some_and(|eye| seen && memory.look(queue, eye));
+        let looked = elsewhere || seen != solver.steps.seen;
+        // What lies under the surface is looked at for an eye alone.
+        let is_new = changed || seen && !solver.steps.seen;
+        let solves = is_new || solver.unsettled > 0;
+        solver.unsettled = if is_new { SETTLING } else { solver.unsettled.saturating_sub(1) };
+        solver.steps = Steps {
+            moved: solves && !solver.is_first,
+            tries: if solves { TransportStage::tries(solver.is_first) } else { solver.steps.tries },
+            seen,
+        };
+        if solves || looked {
+            self.pending.insert(StageSet::from_stage_on(Stage::Scatter));
+        }
+    }
+}
+
+/// Whether the solver can run so.
+pub(super) fn check_transport(
+    tree: &Tree,
+    transport: Transport,
+    method: Method,
+    evaluate: Evaluate,
+    limits: &wgpu::Limits,
+) -> Result<(), Error> {
+    if transport == Transport::Classic {
+        return Ok(());
+    }
+    let at_texels = matches!(evaluate, Evaluate::PerTexel | Evaluate::Auto);
+    if !at_texels || !matches!(method.resolved(), Method::Dual { .. }) {
+        return Err(Error::Frame {
+            problem: format!("{transport:?} by {method:?}, evaluated {evaluate:?}"),
+            remedy: "use the dual scatter, evaluated per texel",
+        });
+    }
+    stage::check(tree, limits)
+}

@@ -1,0 +1,327 @@
+//! What the boundary solver of one body remembers.
+
+use super::TransportStage;
+use crate::Error;
+use crate::buffers::Buffers;
+use crate::gpu::{self, UNIFORM_STRIDE};
+use crate::layout::{
+    ChargeLayout, DualLayout, LevelLayout, NodeLayout, ParabolaLayout, ScatterLayout, ShapeLayout,
+    StateLayout, StrataLayout, TermLayout, TransportLayout,
+};
+use crate::kernel_table::KernelTableLayout;
+use crate::stages::cluster::Tree;
+use crate::stages::scatter::dual::{Demand, Lists, Plan};
+use std::sync::Arc;
+
+/// Most workgroups of the solver's sums.
+const MOST_GROUPS: u32 = 256;
+/// Texels that are worth a workgroup of them.
+const TEXELS_PER_GROUP: u32 = 512;
+/// As in `krylov.wgsl`.
+/// Directions, and the solution.
+const DIRECTIONS: u64 = 5;
+const PRODUCTS: u64 = 16;
+/// Nearer than this many mean free paths clusters need not look as small: G is singular there, but little of it comes from so near.
+const NEAR: f32 = 0.25;
+
+pub(crate) struct TransportMemory {
+    uniform: wgpu::Buffer,
+    levels: wgpu::Buffer,
+    state: wgpu::Buffer,
+    bytes: u64,
+    pub debug: Vec<wgpu::Buffer>,
+    pub lists: Arc<Lists>,
+    pub plan: Plan,
+    pub groups: u32,
+    pub sites: wgpu::BindGroup,
+    pub source: wgpu::BindGroup,
+    pub merge: wgpu::BindGroup,
+    pub given: wgpu::BindGroup,
+    pub sent: wgpu::BindGroup,
+    pub deeper: wgpu::BindGroup,
+    pub returning: wgpu::BindGroup,
+    pub krylov: wgpu::BindGroup,
+    pub layer: wgpu::BindGroup,
+    pub picture: wgpu::BindGroup,
+    layout: TransportLayout,
+}
+
+/// What of the body it reads.
+#[derive(Clone, Copy)]
+pub(crate) struct Inputs<'a> {
+    pub buffers: &'a Buffers,
+    pub tree: &'a Tree,
+}
+
+impl TransportMemory {
+    pub fn new(
+        device: &wgpu::Device,
+        stage: &TransportStage,
+        Inputs { buffers, tree }: Inputs<'_>,
+        demand: Demand,
+        lists: Arc<Lists>,
+        layout: TransportLayout,
+    ) -> Self {
+        let plan = Plan::new(tree, demand, &device.limits());
+        let uniform = gpu::uniform_buffer(device, "transport", size_of::<TransportLayout>() as u64);
+        let levels =
+            gpu::uniform_buffer(device, "potential", UNIFORM_STRIDE * u64::from(plan.start_level + 1));
+        let sizes = Sizes::new(tree);
+        let storage = |label, bytes: u64| gpu::buffer(device, label, bytes);
+        let bounds = storage("bounds of sites", sizes.bounds);
+        let nodes = storage("nodes", sizes.nodes);
+        let shapes = storage("shapes", sizes.shapes);
+        let charges = storage("charges", sizes.charges);
+        let strata = storage("strata", sizes.strata);
+        let [entered, given, sent, deeper] =
+            ["entered", "given", "sent", "deeper"].map(|label| storage(label, sizes.vectors));
+        let fluence = storage("fluence", 2 * sizes.vectors);
+        let leaving = storage("leaving", sizes.leaving);
+        let directions = storage("directions", sizes.directions);
+        let state = storage("state", size_of::<StateLayout>() as u64);
+        let groups = layout.groups;
+        let partial = storage("partial sums", sizes.partial);
+        let parabolas = storage("parabolas", sizes.parabolas);
+
+        let bind = |label, layout: &wgpu::BindGroupLayout, resources: &[wgpu::BindingResource<'_>]| {
+            gpu::bind(device, label, layout, resources)
+        };
+        let level = || gpu::uniform_slot::<LevelLayout>(&buffers.cluster_uniforms);
+        let all = wgpu::Buffer::as_entire_binding;
+        let sum = |label, sums: &wgpu::Buffer| {
+            let resources = [
+                gpu::uniform_slot::<DualLayout>(&levels),
+                all(&bounds),
+                all(&charges),
+                all(sums),
+                all(&lists.expansions),
+                all(&lists.heads),
+                all(&lists.lists),
+                all(&uniform),
+                all(&shapes),
+                all(&strata),
+            ];
+            bind(label, &stage.layouts.potential, &resources)
+        };
+        Self {
+            sites: bind(
+                "sites",
+                &stage.layouts.sites,
+                &[
+                    level(),
+                    all(&buffers.texel_positions),
+                    all(&buffers.texel_normals),
+                    all(&nodes),
+                    all(&bounds),
+                    all(&shapes),
+                ],
+            ),
+            source: bind(
+                "source",
+                &stage.layouts.source,
+                &[
+                    all(&uniform),
+                    all(&buffers.gather_uniform),
+                    all(&buffers.texel_positions),
+                    all(&buffers.texel_normals),
+                    all(&buffers.irradiance),
+                    all(&buffers.marks),
+                    all(&nodes),
+                    all(&charges),
+                    all(&strata),
+                    all(&entered),
+                ],
+            ),
+            merge: bind(
+                "merge",
+                &stage.layouts.merge,
+                &[level(), all(&uniform), all(&bounds), all(&charges), all(&strata)],
+            ),
+            given: sum("given", &given),
+            sent: sum("sent", &sent),
+            deeper: sum("deeper", &deeper),
+            returning: bind(
+                "returning",
+                &stage.layouts.returning,
+                &[
+                    level(),
+                    all(&uniform),
+                    all(&bounds),
+                    all(&shapes),
+                    all(&fluence),
+                    all(&entered),
+                    all(&leaving),
+                    all(&charges),
+                ],
+            ),
+            krylov: bind(
+                "krylov",
+                &stage.layouts.krylov,
+                &[
+                    all(&uniform),
+                    all(&given),
+                    all(&sent),
+                    all(&shapes),
+                    all(&directions),
+                    all(&state),
+                    all(&partial),
+                    all(&fluence),
+                ],
+            ),
+            layer: bind(
+                "layer",
+                &stage.layouts.layer,
+                &[
+                    all(&uniform),
+                    all(&buffers.marks),
+                    all(&strata),
+                    all(&entered),
+                    all(&fluence),
+                    all(&deeper),
+                    all(&leaving),
+                    all(&parabolas),
+                    all(&buffers.exitance),
+                ],
+            ),
+            picture: bind(
+                "picture",
+                &stage.layouts.picture,
+                &[
+                    all(&uniform),
+                    all(&buffers.gather_uniform),
+                    all(&nodes),
+                    all(&buffers.texel_positions),
+                    all(&buffers.texel_normals),
+                    all(&buffers.marks),
+                    all(&parabolas),
+                    all(&buffers.exitance),
+                ],
+            ),
+            bytes: bytes(tree),
+            debug: vec![given, fluence, leaving, strata, charges, shapes, bounds, deeper, entered, sent],
+            uniform,
+            levels,
+            state,
+            lists,
+            plan,
+            groups,
+            layout,
+        }
+    }
+
+    /// Starts anew at the next frame: what the last one solved has nothing to do with it.
+    pub fn forget(&self, encoder: &mut wgpu::CommandEncoder) {
+        encoder.clear_buffer(&self.state, 0, None);
+    }
+
+    /// Where the solver is.
+    pub fn state(&self) -> &wgpu::Buffer {
+        &self.state
+    }
+
+    /// Workgroups of the solver's sums.
+    pub fn groups(tree: &Tree) -> u32 {
+        tree.counts[0].div_ceil(TEXELS_PER_GROUP).min(MOST_GROUPS)
+    }
+
+    /// Bytes, apart from the lists.
+    pub fn bytes(&self) -> u64 {
+        let own = [&self.uniform, &self.levels, &self.state].map(wgpu::Buffer::size);
+        own.iter().sum::<u64>() + self.bytes
+    }
+
+    /// Takes over the medium, and how small clusters have to look.
+    pub fn write(&mut self, queue: &wgpu::Queue, layout: TransportLayout, tree: &Tree, theta: f32) {
+        let eye = self.layout.eye;
+        self.layout = TransportLayout { eye, ..layout };
+        queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&self.layout));
+        let nearest = layout.extinction[..3].iter().fold(f32::MAX, |least, &sigma| least.min(NEAR / sigma));
+        let scatter = ScatterLayout {
+            table: KernelTableLayout::default(),
+            texel_count: layout.texel_count,
+            first_source: 0,
+            source_count: 0,
+            top_level: layout.top_level,
+            theta_squared: 0.0,
+            z_r_squared: 0.0 * nearest,
+            padding: [0; 2],
+            sources: layout.sources,
+            terms: [TermLayout::default(); 2],
+        };
+        queue.write_buffer(&self.levels, 0, &self.plan.uniforms(&scatter, tree, theta));
+    }
+
+    /// Whether that is another eye.
+    pub fn look(&mut self, queue: &wgpu::Queue, eye: [f32; 3]) -> bool {
+        let is_new = self.layout.eye != eye;
+        if is_new {
+            self.layout.eye = eye;
+            queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&self.layout));
+        }
+        is_new
+    }
+
+    /// Whether it serves this demand too.
+    pub fn serves(&self, demand: Demand, tree: &Tree, limits: &wgpu::Limits) -> bool {
+        self.plan.capacity >= Plan::new(tree, demand, limits).capacity
+    }
+}
+
+/// Bytes of what grows with the body.
+struct Sizes {
+    bounds: u64,
+    nodes: u64,
+    shapes: u64,
+    charges: u64,
+    strata: u64,
+    leaving: u64,
+    directions: u64,
+    partial: u64,
+    parabolas: u64,
+    /// Of a vector per texel.
+    vectors: u64,
+}
+
+impl Sizes {
+    fn new(tree: &Tree) -> Self {
+        let (texels, sources, nodes) =
+            (u64::from(tree.counts[0]), u64::from(tree.sources()), u64::from(tree.clusters()).max(1));
+        let of = |size: usize, count: u64| size as u64 * count;
+        Self {
+            bounds: 16 * (sources + nodes),
+            nodes: of(size_of::<NodeLayout>(), nodes),
+            shapes: of(size_of::<ShapeLayout>(), sources),
+            charges: of(size_of::<ChargeLayout>(), 2 * sources),
+            strata: of(size_of::<StrataLayout>(), sources),
+            leaving: 16 * (sources + texels),
+            directions: 32 * DIRECTIONS * texels,
+            partial: 16 * PRODUCTS * u64::from(TransportMemory::groups(tree)),
+            parabolas: of(size_of::<ParabolaLayout>(), texels),
+            vectors: 16 * texels,
+        }
+    }
+}
+
+/// Bytes that the boundary solver of a body takes, apart from the lists.
+pub(crate) fn bytes(tree: &Tree) -> u64 {
+    let Sizes { bounds, nodes, shapes, charges, strata, leaving, directions, partial, parabolas, vectors } =
+        Sizes::new(tree);
+    bounds + nodes + shapes + charges + strata + leaving + directions + partial + parabolas + 6 * vectors
+}
+
+/// Whether a binding holds the largest of it.
+pub(crate) fn check(tree: &Tree, limits: &wgpu::Limits) -> Result<(), Error> {
+    let Sizes { charges, directions, .. } = Sizes::new(tree);
+    let (required, actual) =
+        (charges.max(directions), limits.max_storage_buffer_binding_size.min(limits.max_buffer_size));
+    if required <= actual {
+        return Ok(());
+    }
+    Err(Error::Limit {
+        what: "the boundary solver".to_owned(),
+        limit: "max_storage_buffer_binding_size",
+        required,
+        actual,
+        remedy: "use a smaller atlas or `Transport::Classic`, or create the device with higher limits",
+    })
+}

@@ -1,0 +1,291 @@
+//! Transport: light that entered → radiant exitance, by diffusion with the boundary that the body has.
+//!
+//! reads  texel positions, normals, irradiance, lights, marks      writes  exitance per texel, linear RGB
+//! twin   `translume_reference::transport`
+//!
+//! | WGSL | what it does | twin |
+//! | --- | --- | --- |
+//! | `transport/sites.wgsl` | texels as discs, summed up their tree | |
+//! | `transport/source.wgsl`, `shared/ray.wgsl` | where light scatters first, through what it came, what the body hides of the sky | `source`, `rays` |
+//! | `transport/merge.wgsl` | what texels send, summed up their tree | |
+//! | `kernel/potential.wgsl`, `dual.wgsl` | the sums of the equation | `equation`, `disc` |
+//! | `transport/returning.wgsl` | light that enters again | `equation` |
+//! | `transport/krylov.wgsl` | the next try | `krylov` |
+//! | `transport/layer.wgsl` | exitance by the diffuse law, φ under the surface | `layer` |
+//! | `transport/picture.wgsl` | radiance towards the eye, once scattered light | `picture`, `single` |
+
+mod memory;
+
+use crate::gpu::{self, Pass, READ, UNIFORM, UNIFORM_ARRAY, UNIFORM_STRIDE, WRITE};
+use crate::stages::cluster::Tree;
+pub(crate) use memory::{Inputs, TransportMemory, bytes, check};
+use wgpu::ComputePipeline;
+
+/// Tries of the first frame, and of every later one.
+const COLD: u32 = 8;
+const WARM: u32 = 1;
+
+pub(crate) struct TransportStage {
+    layouts: Layouts,
+    sites: [ComputePipeline; 2],
+    enter: ComputePipeline,
+    merge_light: ComputePipeline,
+    merge_surface: ComputePipeline,
+    begin: ComputePipeline,
+    /// Inner and leaf of each sum.
+    light: [ComputePipeline; 2],
+    surface: [ComputePipeline; 2],
+    below: [ComputePipeline; 2],
+    /// Of the trial, and of what was found.
+    leave: [ComputePipeline; 2],
+    merge_leaving: ComputePipeline,
+    charge: [ComputePipeline; 2],
+    krylov: Krylov,
+    diffuse: ComputePipeline,
+    parabola: ComputePipeline,
+    gathered: ComputePipeline,
+}
+
+/// What `krylov.wgsl` does, in its order.
+struct Krylov {
+    measure: ComputePipeline,
+    settle_mean: ComputePipeline,
+    start: ComputePipeline,
+    adopt: ComputePipeline,
+    take: ComputePipeline,
+    project_direction: ComputePipeline,
+    weigh_direction: ComputePipeline,
+    part: ComputePipeline,
+    turn: ComputePipeline,
+    project_residual: ComputePipeline,
+    weigh_residual: ComputePipeline,
+    advance: ComputePipeline,
+    give_up: ComputePipeline,
+}
+
+/// Of the bindings of each module.
+struct Layouts {
+    sites: wgpu::BindGroupLayout,
+    source: wgpu::BindGroupLayout,
+    merge: wgpu::BindGroupLayout,
+    potential: wgpu::BindGroupLayout,
+    returning: wgpu::BindGroupLayout,
+    krylov: wgpu::BindGroupLayout,
+    layer: wgpu::BindGroupLayout,
+    picture: wgpu::BindGroupLayout,
+}
+
+/// What of the light's way a frame does anew.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Steps {
+    /// Whether what was found before is no solution of this shape.
+    pub moved: bool,
+    /// Tries; none where nothing but the eye moved.
+    pub tries: u32,
+    /// Whether light is gathered towards an eye.
+    pub seen: bool,
+}
+
+impl TransportStage {
+    pub fn new(device: &wgpu::Device) -> Self {
+        let layout = |label, types: &[wgpu::BindingType]| {
+            gpu::layout(device, label, wgpu::ShaderStages::COMPUTE, types)
+        };
+        let layouts = Layouts {
+            sites: layout("sites", &[UNIFORM_ARRAY, READ, READ, WRITE, WRITE, WRITE]),
+            source: layout(
+                "source",
+                &[UNIFORM, UNIFORM, READ, READ, READ, READ, READ, WRITE, WRITE, WRITE],
+            ),
+            merge: layout("merge", &[UNIFORM_ARRAY, UNIFORM, READ, WRITE, WRITE]),
+            potential: layout(
+                "potential",
+                &[UNIFORM_ARRAY, READ, READ, WRITE, WRITE, WRITE, WRITE, UNIFORM, READ, READ],
+            ),
+            returning: layout(
+                "returning",
+                &[UNIFORM_ARRAY, UNIFORM, READ, READ, READ, READ, WRITE, WRITE],
+            ),
+            krylov: layout("krylov", &[UNIFORM, READ, READ, READ, WRITE, WRITE, WRITE, WRITE]),
+            layer: layout("layer", &[UNIFORM, READ, READ, READ, READ, READ, READ, WRITE, WRITE]),
+            picture: layout("picture", &[UNIFORM, UNIFORM, READ, READ, READ, READ, READ, WRITE]),
+        };
+        let module = |shader| gpu::module(device, shader);
+        let pipeline =
+            |layout, module: &wgpu::ShaderModule, entry| gpu::compute_pipeline(device, layout, module, entry);
+        let sites = module(translume_shaders::SITES);
+        let merge = module(translume_shaders::MERGE);
+        let potential = module(translume_shaders::POTENTIAL);
+        let returning = module(translume_shaders::RETURNING);
+        let krylov = module(translume_shaders::KRYLOV);
+        let layer = module(translume_shaders::LAYER);
+        let sum = |light: bool, surface: bool, below: bool| {
+            let constants = [("LIGHT", light), ("SURFACE", surface), ("BELOW", below)];
+            let constants = constants.map(|(name, on)| (name, f64::from(u8::from(on))));
+            ["inner", "leaf"].map(|entry| {
+                gpu::specialised_pipeline(device, &layouts.potential, &potential, entry, &constants)
+            })
+        };
+        Self {
+            sites: ["from_texels", "from_clusters"].map(|entry| pipeline(&layouts.sites, &sites, entry)),
+            enter: pipeline(&layouts.source, &module(translume_shaders::SOURCE), "enter"),
+            merge_light: pipeline(&layouts.merge, &merge, "light"),
+            merge_surface: pipeline(&layouts.merge, &merge, "surface"),
+            begin: pipeline(&layouts.potential, &potential, "start"),
+            light: sum(true, false, false),
+            surface: sum(false, true, false),
+            below: sum(true, true, true),
+            leave: ["leave", "leave_found"].map(|entry| pipeline(&layouts.returning, &returning, entry)),
+            merge_leaving: pipeline(&layouts.returning, &returning, "merge"),
+            charge: ["charge", "charge_found"].map(|entry| pipeline(&layouts.returning, &returning, entry)),
+            krylov: Krylov {
+                measure: pipeline(&layouts.krylov, &krylov, "measure"),
+                settle_mean: pipeline(&layouts.krylov, &krylov, "settle_mean"),
+                start: pipeline(&layouts.krylov, &krylov, "start"),
+                adopt: pipeline(&layouts.krylov, &krylov, "adopt"),
+                take: pipeline(&layouts.krylov, &krylov, "take"),
+                project_direction: pipeline(&layouts.krylov, &krylov, "project_direction"),
+                weigh_direction: pipeline(&layouts.krylov, &krylov, "weigh_direction"),
+                part: pipeline(&layouts.krylov, &krylov, "part"),
+                turn: pipeline(&layouts.krylov, &krylov, "turn"),
+                project_residual: pipeline(&layouts.krylov, &krylov, "project_residual"),
+                weigh_residual: pipeline(&layouts.krylov, &krylov, "weigh_residual"),
+                advance: pipeline(&layouts.krylov, &krylov, "advance"),
+                give_up: pipeline(&layouts.krylov, &krylov, "give_up"),
+            },
+            diffuse: pipeline(&layouts.layer, &layer, "diffuse"),
+            parabola: pipeline(&layouts.layer, &layer, "parabola"),
+            gathered: pipeline(&layouts.picture, &module(translume_shaders::PICTURE), "gathered"),
+            layouts,
+        }
+    }
+
+    /// Tries of a frame.
+    pub fn tries(is_first: bool) -> u32 {
+        if is_first { std::env::var("TL_COLD").map_or(COLD, |x| x.parse().unwrap_or(COLD)) } else { WARM }
+    }
+
+    pub fn encode(&self, pass: &mut Pass<'_>, memory: &TransportMemory, tree: &Tree, steps: Steps) {
+        let frame = Recorder { stage: self, memory, tree };
+        let texels = tree.counts[0];
+        if steps.tries > 0 {
+            frame.up(pass, &memory.sites, |level| &self.sites[usize::from(level > 1)]);
+            frame.each(pass, &self.enter, &memory.source);
+            frame.up(pass, &memory.merge, |_| &self.merge_light);
+            frame.sum(pass, &self.light, &memory.given);
+            let krylov = &self.krylov;
+            frame.groups(pass, &krylov.measure);
+            frame.one(pass, &krylov.settle_mean);
+            frame.each(pass, &krylov.start, &memory.krylov);
+            if steps.moved {
+                frame.apply(pass);
+                frame.each(pass, &krylov.adopt, &memory.krylov);
+            }
+            frame.minimise(pass);
+            for _ in 0..steps.tries {
+                frame.apply(pass);
+                frame.each(pass, &krylov.take, &memory.krylov);
+                frame.groups(pass, &krylov.project_direction);
+                frame.one(pass, &krylov.weigh_direction);
+                frame.each(pass, &krylov.part, &memory.krylov);
+                frame.one(pass, &krylov.turn);
+                frame.minimise(pass);
+            }
+            frame.charge(pass, 1);
+            if steps.seen {
+                frame.sum(pass, &self.below, &memory.deeper);
+                frame.each(pass, &self.parabola, &memory.layer);
+            }
+        }
+        // Who is turned away from the eye, and who is not seen from one at all.
+        frame.each(pass, &self.diffuse, &memory.layer);
+        if steps.seen {
+            pass.set_pipeline(&self.gathered);
+            pass.set_bind_group(&memory.picture, &[]);
+            pass.dispatch(texels);
+        }
+    }
+}
+
+struct Recorder<'a> {
+    stage: &'a TransportStage,
+    memory: &'a TransportMemory,
+    tree: &'a Tree,
+}
+
+impl<'a> Recorder<'a> {
+    /// Every level above the texels in turn.
+    fn up(
+        &self,
+        pass: &mut Pass<'_>,
+        group: &wgpu::BindGroup,
+        pipeline: impl Fn(usize) -> &'a ComputePipeline,
+    ) {
+        for level in 1..self.tree.counts.len() {
+            pass.set_pipeline(pipeline(level));
+            pass.set_bind_group(group, &[(level - 1) as u32 * UNIFORM_STRIDE as u32]);
+            pass.dispatch(self.tree.counts[level]);
+        }
+    }
+
+    /// Every texel.
+    fn each(&self, pass: &mut Pass<'_>, pipeline: &ComputePipeline, group: &wgpu::BindGroup) {
+        pass.set_pipeline(pipeline);
+        pass.set_bind_group(group, &[]);
+        pass.dispatch(self.tree.counts[0]);
+    }
+
+    /// The solver's sums over all texels.
+    fn groups(&self, pass: &mut Pass<'_>, pipeline: &ComputePipeline) {
+        pass.set_pipeline(pipeline);
+        pass.set_bind_group(&self.memory.krylov, &[]);
+        pass.dispatch_workgroups(self.memory.groups, 1);
+    }
+
+    fn one(&self, pass: &mut Pass<'_>, pipeline: &ComputePipeline) {
+        pass.set_pipeline(pipeline);
+        pass.set_bind_group(&self.memory.krylov, &[]);
+        pass.dispatch_workgroups(1, 1);
+    }
+
+    /// What the equation makes of the trial.
+    fn apply(&self, pass: &mut Pass<'_>) {
+        self.charge(pass, 0);
+        self.sum(pass, &self.stage.surface, &self.memory.sent);
+    }
+
+    /// The least residual that the directions leave, and the next trial.
+    fn minimise(&self, pass: &mut Pass<'_>) {
+        let krylov = &self.stage.krylov;
+        self.groups(pass, &krylov.project_residual);
+        self.one(pass, &krylov.weigh_residual);
+        self.each(pass, &krylov.advance, &self.memory.krylov);
+        self.one(pass, &krylov.give_up);
+    }
+
+    /// What the trial sends (0), or what was found (1).
+    fn charge(&self, pass: &mut Pass<'_>, which: usize) {
+        let (stage, memory) = (self.stage, self.memory);
+        let at_texels = |pass: &mut Pass<'_>, pipeline: &ComputePipeline| {
+            pass.set_pipeline(pipeline);
+            pass.set_bind_group(&memory.returning, &[0]);
+            pass.dispatch(self.tree.counts[0]);
+        };
+        at_texels(pass, &stage.leave[which]);
+        self.up(pass, &memory.returning, |_| &stage.merge_leaving);
+        at_texels(pass, &stage.charge[which]);
+        self.up(pass, &memory.merge, |_| &stage.merge_surface);
+    }
+
+    /// One traversal.
+    fn sum(&self, pass: &mut Pass<'_>, [inner, leaf]: &[ComputePipeline; 2], group: &wgpu::BindGroup) {
+        pass.set_pipeline(&self.stage.begin);
+        pass.set_bind_group(group, &[0]);
+        pass.dispatch_workgroups(1, 1);
+        for level in (0..=self.memory.plan.start_level).rev() {
+            pass.set_pipeline(if level > 0 { inner } else { leaf });
+            pass.set_bind_group(group, &[level * UNIFORM_STRIDE as u32]);
+            pass.dispatch(self.tree.counts[level as usize]);
+        }
+    }
+}

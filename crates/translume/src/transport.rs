@@ -1,0 +1,153 @@
+//! How light goes through the body.
+
+use crate::layout::TransportLayout;
+use crate::stages::cluster::Tree;
+use crate::{Error, Medium, fresnel};
+
+/// What the way of light from where it enters to where it leaves is taken to be.
+///
+/// ```
+/// use translume::Transport;
+///
+/// assert_eq!("layers".parse(), Ok(Transport::BoundaryLayers));
+/// assert_eq!(Transport::Boundary.name(), "boundary");
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum Transport {
+    /// Every texel as if the body were a half-space around it: the [`Profile`](crate::Profile) of the straight line from where light entered. One sum a
+    /// frame. Right on thick, smooth bodies; tens of percent off, and more, in thin parts and with the light behind.
+    #[default]
+    Classic,
+    /// Diffusion with the boundary that the body has, as an integral equation for the fluence on its surface that a few sums a frame solve,
+    /// each from where the last frame stopped. Light that scattered first is put where it did, crosses thin parts that are in their own shadow,
+    /// and leaves a concave body to enter it again. What leaves is as bright in all directions. The profile is not used.
+    Boundary,
+    /// The same, and light leaves as the field under the surface says: gathered along the ray of view from φ at the surface and below it, and once
+    /// scattered light marched. Needs [`Frame::view`](crate::Frame::view), for the texture is then that camera's; without one, and through a surface
+    /// that refracts (an index other than 1), it is [`Boundary`](Self::Boundary).
+    BoundaryLayers,
+}
+
+impl Transport {
+    /// All of them, the cheapest first.
+    pub const ALL: [Self; 3] = [Self::Classic, Self::Boundary, Self::BoundaryLayers];
+
+    /// As it is written in files and on command lines.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Classic => "classic",
+            Self::Boundary => "boundary",
+            Self::BoundaryLayers => "layers",
+        }
+    }
+}
+
+impl std::str::FromStr for Transport {
+    type Err = Error;
+
+    fn from_str(name: &str) -> Result<Self, Error> {
+        Self::ALL.into_iter().find(|transport| transport.name() == name).ok_or_else(|| Error::Frame {
+            problem: format!("no transport is called {name}"),
+            remedy: "take classic, boundary or layers",
+        })
+    }
+}
+
+/// Optical depth between Milne's extrapolated end point, .7104, and that of the diffusion condition, 2/3.
+const MILNE: f64 = 1.065;
+/// What neither scatters nor absorbs is taken to absorb this much, 1/mm.
+const CLEAR: f64 = 1e-6;
+
+/// What the shaders need to know of a medium and of the tree of a body.
+pub(crate) fn layout(medium: &Medium, tree: &Tree, groups: u32, texel: f32) -> TransportLayout {
+    let eta = f64::from(medium.ior);
+    let reflected = fresnel::diffuse_internal_reflectance(eta).clamp(0.0, 0.99);
+    let robin = ((1.0 - reflected) / (2.0 * (1.0 + reflected) * MILNE)) as f32;
+    let channel = |k: usize| {
+        let scattering = f64::from(medium.sigma_s_prime[k]);
+        let absorption = f64::from(medium.sigma_a[k]).max(CLEAR - scattering);
+        let extinction = scattering + absorption;
+        // Grosjean's.
+        let diffusion = (2.0 * absorption + scattering) / (3.0 * extinction * extinction);
+        [extinction, scattering / extinction, diffusion, (absorption / diffusion).sqrt()]
+    };
+    let channels = [0, 1, 2].map(channel);
+    let row = |k: usize, geometry: f32| {
+        [channels[0][k] as f32, channels[1][k] as f32, channels[2][k] as f32, geometry]
+    };
+    let levels = |list: &[u32]| {
+        let mut packed = [[0; 4]; 4];
+        for (level, offset) in list.iter().enumerate() {
+            packed[level / 4][level % 4] = *offset;
+        }
+        packed
+    };
+    let boost = channels.map(|[_, albedo, ..]| (1.0 + shortfall(albedo)) as f32);
+    let boost = std::env::var("TL_BOOST").map_or(boost, |x| [x.parse().unwrap_or(0.0); 3]);
+    TransportLayout {
+        extinction: row(0, 0.0),
+        albedo: row(1, 0.0),
+        diffusion: row(2, 1.0),
+        decay: row(3, 0.0),
+        robin: [robin, robin, robin, 0.0],
+        boost: [boost[0], boost[1], boost[2], 0.0],
+        texel_count: tree.counts[0],
+        top_level: tree.top_level(),
+        eta: medium.ior,
+        source_count: tree.sources(),
+        groups,
+        // Half a diagonal of a square texel.
+        reach_squared: 0.5 * texel * texel,
+        padding: [0; 2],
+        eye: [0.0; 3],
+        padding_2: 0,
+        offsets: levels(&tree.offsets),
+        sources: levels(&tree.source_offsets),
+    }
+}
+
+/// Factor on what leaves by the diffuse law, L = `exit_scale`·F_t·B/π.
+pub(crate) fn exit_scale(ior: f32) -> f32 {
+    (1.0 / fresnel::hemispherical_transmittance(ior.into())) as f32
+}
+
+/// ρ: by how much single scattering has to count more, so that a half-space in an even light returns Chandrasekhar's albedo, over √(1 − α') in steps of
+/// .05: `translume_reference::transport::shortfall`, against which a test holds it.
+const SHORTFALL: [f64; 21] = [
+    0.3016, 0.2695, 0.2441, 0.2224, 0.2026, 0.1838, 0.1655, 0.1477, 0.1305, 0.1139, 0.0982, 0.0835, 0.0699, 0.0574,
+    0.0461, 0.0359, 0.0269, 0.0189, 0.0118, 0.0056, 0.0,
+];
+
+fn shortfall(albedo: f64) -> f64 {
+    let x = (1.0 - albedo.clamp(0.0, 1.0)).sqrt() * (SHORTFALL.len() - 1) as f64;
+    let cell = (x as usize).min(SHORTFALL.len() - 2);
+    let part = x - cell as f64;
+    SHORTFALL[cell] * (1.0 - part) + SHORTFALL[cell + 1] * part
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use translume_reference::path::Volume;
+    use translume_reference::transport;
+
+    #[test]
+    fn shortfall_is_that_of_the_exact_half_space() {
+        for albedo in [1.0, 0.999, 0.99, 0.96, 0.9, 0.84, 0.68, 0.4, 0.1] {
+            let volume = Volume { sigma_s: [albedo; 3], sigma_a: [1.0 - albedo; 3], g: 0.0, ior: 1.0 };
+            let exact = transport::shortfall(&volume)[0];
+            // Linear between the steps: measured .004.
+            assert!((shortfall(albedo) - exact).abs() < 0.01, "{albedo}: {} {exact}", shortfall(albedo));
+        }
+    }
+
+    #[test]
+    fn names_are_read_back() {
+        for transport in Transport::ALL {
+            assert_eq!(transport.name().parse(), Ok(transport));
+        }
+        assert!("dipole".parse::<Transport>().is_err());
+    }
+}

@@ -1,0 +1,308 @@
+// The kernels of the boundary equation: fluence G of point sources in the volume, and its derivative at sources along their first moment.
+// The dual sum (`dual.wgsl`) adds up, channel by channel,
+//   LIGHT            what entered, and in w how much of all directions is body: φ_Q, c
+//   SURFACE          what the surface sends, Σ A [(c_G φ − 4 c_G Γ) G + φ H]
+//   LIGHT, BELOW     φ under the surface: the first less the second, over c
+
+override LIGHT: bool = true;
+override SURFACE: bool = false;
+// Whether receivers lie under the texels, in each channel as deep as `layer_depth` says, and in w at the mean of that.
+override BELOW: bool = false;
+
+@group(0) @binding(2) var<storage, read> charges: array<Charge>;
+@group(0) @binding(7) var<uniform> transport: Transport;
+@group(0) @binding(8) var<storage, read> shapes: array<Shape>;
+@group(0) @binding(9) var<storage, read> strata: array<Strata>;
+
+const QUARTER_PI_INVERSE: f32 = 0.07957747;
+// The least square of a distance, mm².
+const LEAST_R2: f32 = 1e-12;
+// Where light scatters first no more than this share of the distance away, it is one source.
+const SHALLOW: f32 = 0.15;
+// A source's second moments change what it sends by no more than this share of it.
+const MOST_CORRECTION: f32 = 1.0;
+
+// Least square of a distance over those of the source's and the receivers' sizes.
+const NEAREST: f32 = 4.0;
+// Over the square of a disc's radius.
+const BLUNT: f32 = 0.03;
+
+// To second order around a point, per mm⁰, mm¹, mm².
+struct Expansion {
+    value: vec4f,
+    x: vec4f,
+    y: vec4f,
+    z: vec4f,
+    xx: vec4f,
+    yy: vec4f,
+    zz: vec4f,
+    xy: vec4f,
+    xz: vec4f,
+    yz: vec4f,
+}
+
+// The expansion about a point so far away in each channel.
+fn moved_apart(e: Expansion, d: Places) -> Expansion {
+    var m = e;
+    let hx = e.xx * d.x + e.xy * d.y + e.xz * d.z;
+    let hy = e.xy * d.x + e.yy * d.y + e.yz * d.z;
+    let hz = e.xz * d.x + e.yz * d.y + e.zz * d.z;
+    m.value += (e.x + 0.5 * hx) * d.x + (e.y + 0.5 * hy) * d.y + (e.z + 0.5 * hz) * d.z;
+    m.x += hx;
+    m.y += hy;
+    m.z += hz;
+    return m;
+}
+
+// A vector for each channel, component by component, mm. Groups of receivers are where their texels are that are looked at: in each channel elsewhere.
+alias Place = Places;
+struct Places {
+    x: vec4f,
+    y: vec4f,
+    z: vec4f,
+}
+
+fn together(d: vec3f) -> Places {
+    return Places(vec4f(d.x), vec4f(d.y), vec4f(d.z));
+}
+
+fn minus(p: Places, q: Places) -> Places {
+    return Places(p.x - q.x, p.y - q.y, p.z - q.z);
+}
+
+fn beyond(p: Places, direction: vec3f, ways: vec4f) -> Places {
+    return Places(p.x + direction.x * ways, p.y + direction.y * ways, p.z + direction.z * ways);
+}
+
+fn square(p: Places) -> vec4f {
+    return p.x * p.x + p.y * p.y + p.z * p.z;
+}
+
+// G and its derivatives by r².
+struct Jet {
+    value: vec4f,
+    first: vec4f,
+    second: vec4f,
+    third: vec4f,
+}
+
+fn potential_jet(r2: vec4f) -> Jet {
+    let inverse = 1.0 / r2;
+    let r = sqrt(r2);
+    let x = transport.decay * r;
+    let value = QUARTER_PI_INVERSE / transport.diffusion * exp(-x) * r * inverse;
+    let first = -0.5 * inverse * (1.0 + x);
+    let second = 0.25 * inverse * inverse * (3.0 + x * (3.0 + x));
+    let third = -0.125 * inverse * inverse * inverse * (15.0 + x * (15.0 + x * (6.0 + x)));
+    return Jet(value, value * first, value * second, value * third);
+}
+
+// A symmetric matrix between a vector and itself.
+fn between(m: Moments, o: Places) -> vec4f {
+    return m.diagonal.x * o.x * o.x + m.diagonal.y * o.y * o.y + m.diagonal.z * o.z * o.z
+        + 2.0 * (m.mixed.x * o.x * o.y + m.mixed.y * o.x * o.z + m.mixed.z * o.y * o.z);
+}
+
+// By how much more a source sends than a point, its power and its moment: half its second moments times the second derivatives, over the value.
+struct More {
+    power: vec4f,
+    moment: vec4f,
+}
+
+fn spread_out(jet: Jet, o: Places, shape: Shape) -> More {
+    let along = 2.0 * between(unpacked_moments(shape.moments), o);
+    let square = shape.spread * shape.spread;
+    let power = square * (along * jet.second + jet.first) / max(jet.value, vec4f(1e-30));
+    let moment = square * (along * jet.third + jet.second) / min(jet.first, vec4f(-1e-30));
+    let least = vec4f(-0.5 * MOST_CORRECTION);
+    return More(1.0 + clamp(power, least, vec4f(MOST_CORRECTION)), 1.0 + clamp(moment, least, vec4f(MOST_CORRECTION)));
+}
+
+// What dipoles send that do not all stand in the middle, nor all the same way: their normals' first moments times the second derivatives.
+fn turned(c: Charge, jet: Jet, o: Places, shape: Shape) -> vec4f {
+    let n = shape.normal;
+    let square = dot(n, n);
+    // Flux through the area, were it flat.
+    let whole = (c.x * n.x + c.y * n.y + c.z * n.z) / max(square, 1e-4);
+    let turns = unpacked_moments(shape.turns);
+    let trace = turns.diagonal.x + turns.diagonal.y + turns.diagonal.z;
+    return shape.spread * whole * (4.0 * between(turns, o) * jet.second + 2.0 * trace * jet.first);
+}
+
+// Adds power and first moment so far from receivers of this size. Light that came in aslant may scatter under them although its cluster is not near:
+// then it is taken to be as far as clusters are that count.
+fn add(e: ptr<function, Expansion>, power: vec4f, c: Charge, o: Places, shape: Shape, size: f32) {
+    let jet = potential_jet(max(square(o), vec4f(NEAREST * (shape.spread * shape.spread + size * size) + LEAST_R2)));
+    let more = spread_out(jet, o, shape);
+    let q = power * more.power;
+    let v = Places(c.x * more.moment, c.y * more.moment, c.z * more.moment);
+    let t = v.x * o.x + v.y * o.y + v.z * o.z;
+    (*e).value += q * jet.value - 2.0 * t * jet.first + turned(c, jet, o, shape);
+    // Of the offset, of the moment, of both.
+    let a = 2.0 * q * jet.first - 4.0 * t * jet.second;
+    let b = -2.0 * jet.first;
+    (*e).x += a * o.x + b * v.x;
+    (*e).y += a * o.y + b * v.y;
+    (*e).z += a * o.z + b * v.z;
+    let s = 4.0 * q * jet.second - 8.0 * t * jet.third;
+    let m = -4.0 * jet.second;
+    (*e).xx += s * o.x * o.x + a + 2.0 * m * v.x * o.x;
+    (*e).yy += s * o.y * o.y + a + 2.0 * m * v.y * o.y;
+    (*e).zz += s * o.z * o.z + a + 2.0 * m * v.z * o.z;
+    (*e).xy += s * o.x * o.y + m * (v.x * o.y + v.y * o.x);
+    (*e).xz += s * o.x * o.z + m * (v.x * o.z + v.z * o.x);
+    (*e).yz += s * o.y * o.z + m * (v.y * o.z + v.z * o.y);
+}
+
+fn receiving_place(level: u32, node: u32, middle: vec3f) -> Place {
+    if !BELOW { return together(middle); }
+    return beyond(together(middle), -shapes[source_index(level, node)].normal, below(node << (2u * level)));
+}
+
+fn texel_place(texel: u32, position: vec3f) -> Place {
+    if !BELOW { return together(position); }
+    return beyond(together(position), -shapes[texel].normal, below(texel));
+}
+
+// From what a source sends to receivers, squared, mm²: of light that entered from where it may scatter first, in the nearest of the channels.
+fn distance_square(source: u32, place: Place) -> f32 {
+    let o = minus(place, together(bounds[source].xyz));
+    if !LIGHT {
+        let r2 = square(o);
+        return min(r2.x, min(r2.y, r2.z));
+    }
+    let u = strata[source].direction;
+    let along = (o.x * u.x + o.y * u.y + o.z * u.z) / max(dot(u, u), 1e-12);
+    let r2 = square(beyond(o, -u, clamp(along, vec4f(0.0), ways(strata[source], 2u))));
+    return min(r2.x, min(r2.y, r2.z));
+}
+
+// G is singular: near is near.
+fn smooth_square(texel: u32) -> f32 {
+    return 0.0;
+}
+
+fn moved_to(e: Expansion, before: Place, place: Place) -> Expansion {
+    return moved_apart(e, minus(place, before));
+}
+
+// Adds what a source sends to a group of receivers of this size.
+fn collect(e: ptr<function, Expansion>, source: u32, place: Place, size: f32) {
+    let d = minus(place, together(bounds[source].xyz));
+    let shape = shapes[source];
+    if LIGHT {
+        let own = charges[source];
+        let where_to = strata[source];
+        let direction = where_to.direction;
+        let reach = deepest(where_to);
+        let r2 = square(d);
+        if reach * reach < SHALLOW * SHALLOW * min(min(r2.x, r2.y), r2.z) {
+            let mean = (ways(where_to, 0u) + ways(where_to, 1u) + ways(where_to, 2u)) / 3.0;
+            add(e, own.power, displaced(own, direction, mean), d, shape, size);
+        } else {
+            let third = Charge(own.power / 3.0, own.x / 3.0, own.y / 3.0, own.z / 3.0);
+            for (var k = 0u; k < 3u; k++) { add(e, third.power, third, beyond(d, -direction, ways(where_to, k)), shape, size); }
+        }
+    }
+    if SURFACE {
+        let own = charges[transport.source_count + source];
+        let sign = select(1.0, -1.0, LIGHT);
+        add(e, sign * own.power, Charge(own.power, sign * own.x, sign * own.y, sign * own.z), d, shape, size);
+    }
+}
+
+fn deepest(s: Strata) -> f32 {
+    return max(s.ways[2].x, max(s.ways[2].y, s.ways[2].z));
+}
+
+fn ways(s: Strata, k: u32) -> vec4f {
+    return vec4f(s.ways[k].rgb, 0.0);
+}
+
+// A charge whose power lies so far along a direction, seen from its middle.
+fn displaced(c: Charge, direction: vec3f, ways: vec4f) -> Charge {
+    let moment = c.power * ways;
+    return Charge(c.power, c.x + moment * direction.x, c.y + moment * direction.y, c.z + moment * direction.z);
+}
+
+fn count_evaluations(e: ptr<function, Expansion>, share: f32) {
+}
+
+// Depth of the receivers under a texel.
+fn below(texel: u32) -> vec4f {
+    if !BELOW { return vec4f(0.0); }
+    return layer_depth(strata[texel].ways[2].w);
+}
+
+// What an expansion says of a texel.
+fn settled(e: Expansion, texel: u32, place: Place) -> vec4f {
+    let own = beyond(together(bounds[texel].xyz), -shapes[texel].normal, below(texel));
+    return moved_to(e, place, own).value;
+}
+
+// What a source sends to a texel.
+fn arriving(source: u32, texel: u32, receiver: vec3f) -> vec4f {
+    let d = beyond(together(receiver - bounds[source].xyz), -shapes[texel].normal, below(texel));
+    let shape = shapes[source];
+    let is_texel = source < transport.texel_count;
+    var sum = vec4f(0.0);
+    if LIGHT {
+        let own = charges[source];
+        let where_to = strata[source];
+        let reach = deepest(where_to);
+        let r2 = square(d);
+        if reach * reach < SHALLOW * SHALLOW * min(min(r2.x, r2.y), r2.z) {
+            let mean = (ways(where_to, 0u) + ways(where_to, 1u) + ways(where_to, 2u)) / 3.0;
+            sum += sent(displaced(own, where_to.direction, mean), d, shape, false);
+        } else {
+            // In w there is nothing but a moment.
+            let third = Charge(own.power / 3.0, own.x / 3.0, own.y / 3.0, own.z / 3.0);
+            for (var k = 0u; k < 3u; k++) { sum += sent(third, beyond(d, -where_to.direction, ways(where_to, k)), shape, true); }
+        }
+    }
+    if SURFACE {
+        let from_surface = sent(charges[transport.source_count + source], d, shape, is_texel);
+        sum += select(from_surface, -from_surface, LIGHT);
+    }
+    return sum;
+}
+
+// disc: whether the source is one, so that receivers on and under it see it as that
+fn sent(c: Charge, o: Places, shape: Shape, disc: bool) -> vec4f {
+    let r2 = square(o);
+    let a2 = 2.0 * shape.spread * shape.spread;
+    let far = max(r2, vec4f(LEAST_R2));
+    let jet = potential_jet(far);
+    let t = c.x * o.x + c.y * o.y + c.z * o.z;
+    let more = spread_out(jet, o, shape);
+    var of_point = c.power * jet.value * more.power - 2.0 * t * more.moment * jet.first;
+    of_point += turned(c, jet, o, shape);
+    let near = r2 < vec4f(2.0 * a2);
+    if !disc || !any(near) { return of_point; }
+    return select(of_point, of_disc(c, o, r2, a2, shape.normal), near);
+}
+
+// A disc of radius √a2 about whose axis the receiver is: on it in closed form, beside it as from further up, which is within 2 % in its plane.
+fn of_disc(c: Charge, o: Places, r2: vec4f, a2: f32, normal: vec3f) -> vec4f {
+    let height = normal.x * o.x + normal.y * o.y + normal.z * o.z;
+    let beside2 = max(r2 - height * height, vec4f(0.0));
+    let up2 = height * height + 0.2025 / (a2 * a2) * beside2 * beside2 * beside2;
+    let up = sqrt(up2);
+    let edge = sqrt(up2 + a2);
+    let way = a2 / (edge + up);
+    let decayed = exp(-transport.decay * up);
+    let at_edge = exp(-transport.decay * edge);
+    let x = transport.decay * way;
+    // ∫ e^−σR dR from up to edge.
+    let held = select((decayed - at_edge) / max(transport.decay, vec4f(1e-20)), way * decayed, x < vec4f(1e-3));
+    let scale = 2.0 / a2 * QUARTER_PI_INVERSE / transport.diffusion;
+    let flux = c.x * normal.x + c.y * normal.y + c.z * normal.z;
+    // Discs overlap where texels of different areas meet, and nobody is under a neighbour: beside the axis that is blunt.
+    let blunt = BLUNT * a2 * beside2 / (beside2 + vec4f(BLUNT * BLUNT * a2));
+    let steep = select(abs(height) / sqrt(max(up2 + blunt, vec4f(1e-30))) * decayed, vec4f(0.0), height == vec4f(0.0)) - abs(height) / edge * at_edge;
+    return scale * (c.power * held + sign(height) * flux * steep);
+}
+
+fn finished(sum: vec4f, texel: u32) -> vec4f {
+    return sum;
+}

@@ -1,0 +1,78 @@
+// What the boundary solver knows of a medium and of its tree. Channels are RGB; in w stands geometry: a medium without absorption and with D = 1.
+
+struct Transport {
+    // σ_t, 1/mm.
+    extinction: vec4f,
+    // σ_s'/σ_t.
+    albedo: vec4f,
+    // D, mm.
+    diffusion: vec4f,
+    // √(σ_a/D), 1/mm.
+    decay: vec4f,
+    // What leaves per fluence at the surface.
+    robin: vec4f,
+    // How much single scattering counts.
+    boost: vec4f,
+    texel_count: u32,
+    top_level: u32,
+    // Index of refraction, inside over outside.
+    eta: f32,
+    // Sources of both kinds, and where the second kind begins.
+    source_count: u32,
+    // Workgroups of the solver's sums.
+    groups: u32,
+    // Square of how far a texel of usual size reaches from its middle, mm²: those at a rim hold less than what lies around theirs.
+    reach_squared: f32,
+    padding0: u32,
+    padding1: u32,
+    // Millimetres.
+    eye: vec3f,
+    padding2: u32,
+    // Where each level above the texels begins among the nodes.
+    offsets: array<vec4u, 4>,
+    // Where each level begins among the sources.
+    sources: array<vec4u, 4>,
+}
+
+// What a source sends, channel by channel: power about its middle, and its first moment with what else sends as a dipole does. Of light that
+// entered a texel the power alone, as its place is known from `Strata`.
+struct Charge {
+    power: vec4f,
+    x: vec4f,
+    y: vec4f,
+    z: vec4f,
+}
+
+// Where light that entered scatters first: so far along a direction, in three strata of equal power.
+struct Strata {
+    // Mean direction, inwards; shorter where directions differ.
+    direction: vec3f,
+    // Mean cosine to the inward normal.
+    cosine: f32,
+    // RGB, mm. In w, of a texel: of the first the share of what entered that comes from all around, of the last the way straight inwards to the
+    // other side, mm.
+    ways: array<vec4f, 3>,
+}
+
+fn node_index(level: u32, node: u32) -> u32 {
+    return transport.offsets[level / 4u][level % 4u] + node;
+}
+
+// By how many mean free paths the exact field at an optical depth is that of a shallower one: .7104 − q, with Hopf's function q.
+fn hopf_shift(depth: vec3f) -> vec3f {
+    return 0.1331 * exp(-3.4 * max(depth, vec3f(0.0)));
+}
+
+// Depth of the value below the surface, in mean free paths, and no deeper than this share of the way to the other side.
+const LAYER: f32 = 0.6;
+const LAYER_SHARE: f32 = 0.5;
+
+// How deep that is, mm; in w the mean.
+fn layer_depth(thickness: f32) -> vec4f {
+    let depth = min(LAYER / transport.extinction.rgb, vec3f(LAYER_SHARE * thickness));
+    return vec4f(depth, dot(depth, vec3f(1.0 / 3.0)));
+}
+
+fn luminance(light: vec3f) -> f32 {
+    return dot(light, vec3f(1.0 / 3.0));
+}

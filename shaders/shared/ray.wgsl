@@ -1,0 +1,72 @@
+// Rays through the body, whose surface is the texels' discs. The module declares `transport`, `nodes`, `texel_positions` and `texel_normals`.
+
+// Further than any body is large, mm.
+const FAR: f32 = 1e30;
+const NO_SITE: u32 = 0xffffffffu;
+// Discs that a ray grazes by less are not met.
+const LEAST_COSINE: f32 = 0.02;
+
+struct Crossing {
+    // Along the ray, mm; FAR where there is none.
+    t: f32,
+    // Texel.
+    site: u32,
+}
+
+// The first crossing beyond `begin` that leaves the body (side 1) or enters it (side −1).
+fn first_crossing(origin: vec3f, direction: vec3f, begin: f32, side: f32) -> Crossing {
+    var best = Crossing(FAR, NO_SITE);
+    var level = transport.top_level;
+    var node = 0u;
+    loop {
+        if level > 0u {
+            let here = nodes[node_index(level, node)];
+            let offset = here.centre - origin;
+            let reach = here.radius + sqrt(transport.reach_squared);
+            let along = dot(offset, direction);
+            let away = offset - along * direction;
+            if dot(away, away) < reach * reach && along + reach > begin && along - reach < best.t {
+                level -= 1u;
+                node *= 4u;
+                continue;
+            }
+        } else {
+            let place = texel_positions[node];
+            let normal = texel_normals[node].xyz;
+            let cosine = dot(normal, direction);
+            if cosine * side > LEAST_COSINE {
+                let offset = place.xyz - origin;
+                let t = dot(offset, normal) / cosine;
+                let beside = offset - direction * t;
+                if t > begin && t < best.t && dot(beside, beside) < 0.5 * place.w { best = Crossing(t, node); }
+            }
+        }
+        node += 1u;
+        while level < transport.top_level && (node % 4u == 0u || node >= level_count(transport.texel_count, level)) {
+            node = (node + 3u) / 4u;
+            level += 1u;
+        }
+        if level == transport.top_level { break; }
+    }
+    return best;
+}
+
+// Parts of a ray inside are followed so often.
+const MOST_SEGMENTS: u32 = 4u;
+
+// How much of a ray from outside is inside, mm.
+fn way_inside(origin: vec3f, direction: vec3f, begin: f32, most: f32) -> f32 {
+    var inside = 0.0;
+    var t = begin;
+    for (var k = 0u; k < MOST_SEGMENTS; k++) {
+        let enters = first_crossing(origin, direction, t, -1.0).t;
+        if enters >= most { break; }
+        let leaves = min(first_crossing(origin, direction, enters, 1.0).t, most);
+        // An edge of an open surface.
+        if leaves == FAR { break; }
+        inside += leaves - enters;
+        t = leaves;
+        if t >= most { break; }
+    }
+    return inside;
+}

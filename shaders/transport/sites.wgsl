@@ -1,0 +1,111 @@
+// Sites: the texels as discs, summed up their tree, four to one, by area: middles, extents, and bounds for rays.
+
+struct Level {
+    // Number of nodes below, and of nodes of this level.
+    child_count: u32,
+    node_count: u32,
+    // Where the children and the nodes of this level begin among the nodes above the texels.
+    child_offset: u32,
+    node_offset: u32,
+    // Where the sources of this level, and its receivers, begin in `bounds`.
+    source_offset: u32,
+    receiver_offset: u32,
+    // Where the sources of the level below begin in `bounds`.
+    child_sources: u32,
+    padding: u32,
+}
+
+@group(0) @binding(0) var<uniform> level: Level;
+@group(0) @binding(1) var<storage, read> texel_positions: array<vec4f>;
+@group(0) @binding(2) var<storage, read> texel_normals: array<vec4f>;
+@group(0) @binding(3) var<storage, read_write> nodes: array<Node>;
+// Centres and sizes, first of all sources, then of all receivers above the texels.
+@group(0) @binding(4) var<storage, read_write> bounds: array<vec4f>;
+@group(0) @binding(5) var<storage, read_write> shapes: array<Shape>;
+
+fn texel_node(index: u32) -> Node {
+    let place = texel_positions[index];
+    return Node(place.xyz, disc_reach(place.w), place.xyz, 0.0, 0.0, 1.0, disc_spread(place.w), 0.0);
+}
+
+@compute @workgroup_size(64)
+fn from_texels(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_index) local: u32) {
+    let node = item_index(group, groups, local);
+    if node >= level.node_count { return; }
+    var children: array<Node, 4>;
+    for (var k = 0u; k < 4u; k++) {
+        let texel = node * 4u + k;
+        if texel < level.child_count {
+            let area = texel_positions[texel].w;
+            let normal = texel_normals[texel].xyz;
+            children[k] = texel_node(texel);
+            bounds[texel] = vec4f(children[k].centre, select(0.0, NO_SIZE, area > 0.0));
+            shapes[texel] = Shape(normal, children[k].spread, packed_moments(disc_moments(normal)), area, vec3u(0u), 0u);
+        }
+    }
+    store(node, &children);
+}
+
+@compute @workgroup_size(64)
+fn from_clusters(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_index) local: u32) {
+    let node = item_index(group, groups, local);
+    if node >= level.node_count { return; }
+    var children: array<Node, 4>;
+    for (var k = 0u; k < 4u; k++) {
+        if node * 4u + k < level.child_count { children[k] = nodes[level.child_offset + node * 4u + k]; }
+    }
+    store(node, &children);
+}
+
+fn store(node: u32, children: ptr<function, array<Node, 4>>) {
+    let count = min(level.child_count - node * 4u, 4u);
+    var area = 0.0;
+    var texels = 0.0;
+    for (var k = 0u; k < count; k++) {
+        area += shapes[level.child_sources + node * 4u + k].area;
+        texels += (*children)[k].texels;
+    }
+    var own = Node(vec3f(0.0), 0.0, vec3f(0.0), 0.0, 0.0, texels, 0.0, 0.0);
+    var normal = vec3f(0.0);
+    var weights = vec4f(0.0);
+    for (var k = 0u; k < count; k++) {
+        let shape = shapes[level.child_sources + node * 4u + k];
+        weights[k] = 1.0 / f32(count);
+        if area > 0.0 { weights[k] = shape.area / area; }
+        own.centre += (*children)[k].centre * weights[k];
+        own.middle += (*children)[k].middle * ((*children)[k].texels / texels);
+        normal += shape.normal * weights[k];
+    }
+    var sum = Moments(vec3f(0.0), vec3f(0.0));
+    var turns = Moments(vec3f(0.0), vec3f(0.0));
+    var receiving = 0.0;
+    for (var k = 0u; k < count; k++) {
+        let child = (*children)[k];
+        let shape = shapes[level.child_sources + node * 4u + k];
+        let offset = child.centre - own.centre;
+        let m = unpacked_moments(shape.moments);
+        let square = shape.spread * shape.spread;
+        sum.diagonal += weights[k] * (square * m.diagonal + offset * offset);
+        sum.mixed += weights[k] * (square * m.mixed + offset.xxy * offset.yzz);
+        own.radius = max(own.radius, length(offset) + child.radius);
+        let t = unpacked_moments(shape.turns);
+        let n = shape.normal;
+        turns.diagonal += weights[k] * (shape.spread * t.diagonal + n * offset);
+        turns.mixed += weights[k] * (shape.spread * t.mixed + 0.5 * (n.xxy * offset.yzz + n.yzz * offset.xxy));
+        let apart = child.middle - own.middle;
+        receiving += child.texels / texels * (child.scatter * child.scatter + dot(apart, apart));
+        own.reach = max(own.reach, length(apart) + child.reach);
+    }
+    own.scatter = sqrt(receiving);
+    let trace = sum.diagonal.x + sum.diagonal.y + sum.diagonal.z;
+    own.spread = sqrt(trace);
+    let scale = select(0.0, 1.0 / trace, trace > 0.0);
+    let moments = packed_moments(Moments(scale * sum.diagonal, scale * sum.mixed));
+    let unit = select(0.0, 1.0 / own.spread, own.spread > 0.0);
+    let turning = packed_moments(Moments(unit * turns.diagonal, unit * turns.mixed));
+    nodes[level.node_offset + node] = own;
+    shapes[level.source_offset + node] = Shape(normal, own.spread, moments, area, turning, 0u);
+    let size = select(0.0, max(size_of(own.spread, own.radius), NO_SIZE), area > 0.0);
+    bounds[level.source_offset + node] = vec4f(own.centre, size);
+    bounds[level.receiver_offset + node] = vec4f(own.middle, size_of(own.scatter, own.reach));
+}

@@ -1,0 +1,146 @@
+// Source: light that entered a texel → the strata in which it scatters first, and their power.
+
+@group(0) @binding(0) var<uniform> transport: Transport;
+@group(0) @binding(1) var<uniform> lighting: Gather;
+@group(0) @binding(2) var<storage, read> texel_positions: array<vec4f>;
+@group(0) @binding(3) var<storage, read> texel_normals: array<vec4f>;
+@group(0) @binding(4) var<storage, read> texel_irradiance: array<vec4f>;
+@group(0) @binding(5) var<storage, read> marks: array<u32>;
+@group(0) @binding(6) var<storage, read> nodes: array<Node>;
+@group(0) @binding(7) var<storage, read_write> charges: array<Charge>;
+@group(0) @binding(8) var<storage, read_write> strata: array<Strata>;
+// Irradiance that entered, W/m², and how much of the sky the body hides.
+@group(0) @binding(9) var<storage, read_write> entered: array<vec4f>;
+
+// Texels over which the surface's curvature is measured.
+const PATCH: u32 = 16u;
+// Directions of the sky from each texel.
+const SKY: u32 = 8u;
+// Rays leave the surface beyond so many of a texel's widths.
+const CLEAR: f32 = 1.0;
+
+@compute @workgroup_size(64)
+fn enter(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_index) local: u32) {
+    let index = item_index(group, groups, local);
+    if index >= transport.texel_count { return; }
+    let place = texel_positions[index];
+    let position = place.xyz;
+    let normal = texel_normals[index].xyz;
+    let tint = marked_tint(marks[index]);
+    let width = sqrt(place.w);
+    let thickness = first_crossing(position, -normal, 0.1 * width, 1.0).t;
+    var diffuse = texel_irradiance[index].rgb;
+    var beam = vec3f(0.0);
+    var through = vec3f(0.0);
+    var direction = vec3f(0.0);
+    var cosines = 0.0;
+    for (var k = 0u; k < lighting.light_count; k++) {
+        let arriving = arrival(k, position, width * width, normal);
+        let outside = dot(normal, arriving.to_light);
+        if lighting.lights[k].kind > POINT || outside <= 0.0 { continue; }
+        if any(position < lighting.lights[k].region_low) || any(position > lighting.lights[k].region_high) { continue; }
+        let light = arriving.strength * outside * fresnel_transmittance(transport.eta, outside);
+        let inside = refracted_cosine(transport.eta, outside);
+        let inwards = (outside * normal - arriving.to_light) / transport.eta - normal * inside;
+        let far = select(FAR, length(lighting.lights[k].vector - position), lighting.lights[k].kind == POINT);
+        let crossed = way_inside(position, arriving.to_light, CLEAR * width, far);
+        // What the depth map lets through comes straight; the rest through what is in the way.
+        var straight = vec3f(0.0);
+        if crossed == 0.0 || lighting.ambient_count == 0u { straight = min(light, diffuse); }
+        diffuse -= straight;
+        var rest = vec3f(0.0);
+        if crossed > 0.0 && transport.eta == 1.0 { rest = max(light * exp(-transport.extinction.rgb * crossed) - straight, vec3f(0.0)); }
+        beam += straight;
+        through += rest;
+        let weight = luminance(straight + rest);
+        direction += weight * inwards;
+        cosines += weight * inside;
+    }
+    // An even sky, through a cone inside.
+    let weight = luminance(diffuse);
+    let cone = 2.0 / 3.0 * (1.0 - pow(max(1.0 - 1.0 / (transport.eta * transport.eta), 0.0), 1.5)) * transport.eta * transport.eta;
+    direction -= weight * min(cone, 1.0) * normal;
+    cosines += weight * min(cone, 1.0);
+    let light = (beam + through + diffuse) * tint;
+    let whole = luminance(beam + through) + weight;
+    if whole > 0.0 {
+        direction /= whole;
+        cosines /= whole;
+    } else {
+        direction = -normal;
+        cosines = 1.0;
+    }
+    let steepness = length(direction);
+    let chord = first_crossing(position, direction / max(steepness, 1e-6), 0.1 * width, 1.0).t;
+    let spread_out = 0.9 * max(1.0 - steepness * steepness, 0.0);
+    let bend = 0.5 * curvature(index);
+    let deep = max(-dot(normal, direction), 0.0);
+    var own: Strata;
+    own.direction = direction;
+    own.cosine = cosines;
+    let end = transport.extinction.rgb * chord;
+    let share = 1.0 - exp(-min(end, vec3f(80.0)));
+    for (var k = 0u; k < 3u; k++) {
+        let way = stratum(end, share, k) / transport.extinction.rgb;
+        let depth = deep * way;
+        // Under a curved surface light that went aside is less deep; and depths are Hopf's.
+        let lifted = depth - clamp(bend * spread_out * way * way, vec3f(0.0), 0.5 * depth);
+        let optical = lifted * transport.extinction.rgb;
+        let shifted = (optical - min(hopf_shift(optical), 0.9 * optical)) / transport.extinction.rgb;
+        own.ways[k] = vec4f(way * shifted / max(depth, vec3f(1e-20)), 0.0);
+    }
+    own.ways[0].w = select(0.0, weight / whole, whole > 0.0);
+    own.ways[2].w = thickness;
+    strata[index] = own;
+    let power = transport.albedo.rgb * light * share * place.w;
+    let facing = -normal * place.w;
+    charges[index] = Charge(
+        vec4f(power, 0.0),
+        vec4f(vec3f(0.0), facing.x),
+        vec4f(vec3f(0.0), facing.y),
+        vec4f(vec3f(0.0), facing.z));
+    entered[index] = vec4f(light, hidden_sky(index, position, normal, width));
+}
+
+// Mean depth of one of three strata of equal power, in mean free paths, of a ray that ends at an optical depth and leaves this share behind.
+fn stratum(end: vec3f, share: vec3f, k: u32) -> vec3f {
+    let thin = (f32(k) + 0.5) / 3.0 * end;
+    let begin = -log(1.0 - f32(k) / 3.0 * share);
+    let to = select(-log(1.0 - f32(k + 1u) / 3.0 * share), min(end, vec3f(80.0)), k == 2u);
+    let mean = ((1.0 + begin) * exp(-begin) - (1.0 + to) * exp(-to)) * 3.0 / max(share, vec3f(1e-20));
+    return select(mean, thin, end < vec3f(0.02));
+}
+
+// Mean curvature of the surface about a texel, 1/mm, above 0 where it bulges.
+fn curvature(index: u32) -> f32 {
+    let first = index / PATCH * PATCH;
+    let last = min(first + PATCH, transport.texel_count);
+    var middle = vec3f(0.0);
+    for (var k = first; k < last; k++) { middle += texel_positions[k].xyz; }
+    middle /= f32(last - first);
+    var turned = 0.0;
+    var apart = 0.0;
+    for (var k = first; k < last; k++) {
+        let offset = texel_positions[k].xyz - middle;
+        turned += dot(texel_normals[k].xyz, offset);
+        apart += dot(offset, offset);
+    }
+    return select(0.0, turned / apart, apart > 0.0);
+}
+
+// Share of an even sky that the body hides, from a few directions.
+fn hidden_sky(index: u32, position: vec3f, normal: vec3f, width: f32) -> f32 {
+    let tangent = any_perpendicular(normal);
+    let bitangent = cross(normal, tangent);
+    // Neighbours look elsewhere: a turn by the golden angle, and another place in each ring.
+    let turn = 2.3999632 * f32(index);
+    var hidden = 0.0;
+    for (var k = 0u; k < SKY; k++) {
+        let u = (f32(k) + fract(0.6180340 * f32(index) + 0.5)) / f32(SKY);
+        let angle = turn + 2.3999632 * f32(k);
+        let aside = sqrt(u);
+        let direction = sqrt(1.0 - u) * normal + aside * (cos(angle) * tangent + sin(angle) * bitangent);
+        if first_crossing(position, direction, CLEAR * width, -1.0).t < FAR { hidden += 1.0; }
+    }
+    return hidden / f32(SKY);
+}
