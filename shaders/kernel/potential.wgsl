@@ -24,6 +24,8 @@ const MOST_CORRECTION: f32 = 1.0;
 
 // Least square of a distance over those of the source's and the receivers' sizes.
 const NEAREST: f32 = 4.0;
+// Square of a mean normal that says which way its source faces.
+const LEAST_NORMAL: f32 = 0.3;
 // Over the square of a disc's radius.
 const BLUNT: f32 = 0.03;
 
@@ -122,8 +124,9 @@ fn spread_out(jet: Jet, o: Places, shape: Shape) -> More {
 fn turned(c: Charge, jet: Jet, o: Places, shape: Shape) -> vec4f {
     let n = shape.normal;
     let square = dot(n, n);
-    // Flux through the area, were it flat.
-    let whole = (c.x * n.x + c.y * n.y + c.z * n.z) / max(square, 1e-4);
+    // Flux through the area, were it flat. Where normals cancel nobody knows it.
+    if square < LEAST_NORMAL { return vec4f(0.0); }
+    let whole = (c.x * n.x + c.y * n.y + c.z * n.z) / square;
     let turns = unpacked_moments(shape.turns);
     let trace = turns.diagonal.x + turns.diagonal.y + turns.diagonal.z;
     return shape.spread * whole * (4.0 * between(turns, o) * jet.second + 2.0 * trace * jet.first);
@@ -198,7 +201,8 @@ fn collect(e: ptr<function, Expansion>, source: u32, place: Place, size: f32) {
         let r2 = square(d);
         if reach * reach < SHALLOW * SHALLOW * min(min(r2.x, r2.y), r2.z) {
             let mean = (ways(where_to, 0u) + ways(where_to, 1u) + ways(where_to, 2u)) / 3.0;
-            add(e, own.power, displaced(own, direction, mean), d, shape, size);
+            let moved_charge = displaced(own, direction, mean);
+            add(e, own.power, moved_charge, d, shape, size);
         } else {
             let third = Charge(own.power / 3.0, own.x / 3.0, own.y / 3.0, own.z / 3.0);
             for (var k = 0u; k < 3u; k++) { add(e, third.power, third, beyond(d, -direction, ways(where_to, k)), shape, size); }
@@ -244,7 +248,6 @@ fn settled(e: Expansion, texel: u32, place: Place) -> vec4f {
 fn arriving(source: u32, texel: u32, receiver: vec3f) -> vec4f {
     let d = beyond(together(receiver - bounds[source].xyz), -shapes[texel].normal, below(texel));
     let shape = shapes[source];
-    let is_texel = source < transport.texel_count;
     var sum = vec4f(0.0);
     if LIGHT {
         let own = charges[source];
@@ -253,22 +256,22 @@ fn arriving(source: u32, texel: u32, receiver: vec3f) -> vec4f {
         let r2 = square(d);
         if reach * reach < SHALLOW * SHALLOW * min(min(r2.x, r2.y), r2.z) {
             let mean = (ways(where_to, 0u) + ways(where_to, 1u) + ways(where_to, 2u)) / 3.0;
-            sum += sent(displaced(own, where_to.direction, mean), d, shape, false);
+            sum += sent(displaced(own, where_to.direction, mean), d, shape);
         } else {
             // In w there is nothing but a moment.
             let third = Charge(own.power / 3.0, own.x / 3.0, own.y / 3.0, own.z / 3.0);
-            for (var k = 0u; k < 3u; k++) { sum += sent(third, beyond(d, -where_to.direction, ways(where_to, k)), shape, true); }
+            for (var k = 0u; k < 3u; k++) { sum += sent(third, beyond(d, -where_to.direction, ways(where_to, k)), shape); }
         }
     }
     if SURFACE {
-        let from_surface = sent(charges[transport.source_count + source], d, shape, is_texel);
+        let from_surface = sent(charges[transport.source_count + source], d, shape);
         sum += select(from_surface, -from_surface, LIGHT);
     }
     return sum;
 }
 
-// disc: whether the source is one, so that receivers on and under it see it as that
-fn sent(c: Charge, o: Places, shape: Shape, disc: bool) -> vec4f {
+// Receivers on and under a source see it as a disc.
+fn sent(c: Charge, o: Places, shape: Shape) -> vec4f {
     let r2 = square(o);
     let a2 = 2.0 * shape.spread * shape.spread;
     let far = max(r2, vec4f(LEAST_R2));
@@ -278,7 +281,7 @@ fn sent(c: Charge, o: Places, shape: Shape, disc: bool) -> vec4f {
     var of_point = c.power * jet.value * more.power - 2.0 * t * more.moment * jet.first;
     of_point += turned(c, jet, o, shape);
     let near = r2 < vec4f(2.0 * a2);
-    if !disc || !any(near) { return of_point; }
+    if !any(near) { return of_point; }
     return select(of_point, of_disc(c, o, r2, a2, shape.normal), near);
 }
 

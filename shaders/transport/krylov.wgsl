@@ -289,7 +289,7 @@ fn advance(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups:
     }
     // Who has no area is no unknown: its row gives its fluence.
     if shapes[index].area <= 0.0 {
-        value = (given[index].rgb - sums[index].rgb) / closure(index);
+        value += (given[index].rgb - image) / closure(index);
         image = given[index].rgb;
     }
     directions[own] = vec4f(value, 0.0);
