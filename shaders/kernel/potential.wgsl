@@ -17,8 +17,8 @@ override BELOW: bool = false;
 const QUARTER_PI_INVERSE: f32 = 0.07957747;
 // The least square of a distance, mm².
 const LEAST_R2: f32 = 1e-12;
-// Where light scatters first no more than this share of the distance away, it is one source.
-const SHALLOW: f32 = 0.15;
+// Where light scatters first no more than this share of the distance away, it is one source and how far that is spread out.
+const SHALLOW: f32 = 0.5;
 // A source's second moments change what it sends by no more than this share of it.
 const MOST_CORRECTION: f32 = 1.0;
 
@@ -111,10 +111,19 @@ struct More {
     moment: vec4f,
 }
 
-fn spread_out(jet: Jet, o: Places, shape: Shape) -> More {
+// Power that is spread out along a direction, too: the mean square of its way, mm².
+struct Line {
+    direction: vec3f,
+    square: vec4f,
+}
+
+fn spread_out(jet: Jet, o: Places, shape: Shape, line: Line) -> More {
     let along = 2.0 * between(unpacked_moments(shape.moments), o);
     let square = shape.spread * shape.spread;
-    let power = square * (along * jet.second + jet.first) / max(jet.value, vec4f(1e-30));
+    let u = line.direction;
+    let down = o.x * u.x + o.y * u.y + o.z * u.z;
+    let of_line = line.square * (2.0 * down * down * jet.second + dot(u, u) * jet.first);
+    let power = (square * (along * jet.second + jet.first) + of_line) / max(jet.value, vec4f(1e-30));
     let moment = square * (along * jet.third + jet.second) / min(jet.first, vec4f(-1e-30));
     let least = vec4f(-0.5 * MOST_CORRECTION);
     return More(1.0 + clamp(power, least, vec4f(MOST_CORRECTION)), 1.0 + clamp(moment, least, vec4f(MOST_CORRECTION)));
@@ -134,10 +143,10 @@ fn turned(c: Charge, jet: Jet, o: Places, shape: Shape) -> vec4f {
 
 // Adds power and first moment so far from receivers of this size. Light that came in aslant may scatter under them although its cluster is not near:
 // then it is taken to be as far as clusters are that count.
-fn add(e: ptr<function, Expansion>, power: vec4f, c: Charge, o: Places, shape: Shape, size: f32) {
+fn add(e: ptr<function, Expansion>, c: Charge, o: Places, shape: Shape, size: f32, line: Line) {
     let jet = potential_jet(max(square(o), vec4f(NEAREST * (shape.spread * shape.spread + size * size) + LEAST_R2)));
-    let more = spread_out(jet, o, shape);
-    let q = power * more.power;
+    let more = spread_out(jet, o, shape, line);
+    let q = c.power * more.power;
     let v = Places(c.x * more.moment, c.y * more.moment, c.z * more.moment);
     let t = v.x * o.x + v.y * o.y + v.z * o.z;
     (*e).value += q * jet.value - 2.0 * t * jet.first + turned(c, jet, o, shape);
@@ -170,7 +179,7 @@ fn texel_place(texel: u32, position: vec3f) -> Place {
 // From what a source sends to receivers, squared, mm²: of light that entered from where it may scatter first, in the nearest of the channels.
 fn distance_square(source: u32, place: Place) -> f32 {
     let o = minus(place, together(bounds[source].xyz));
-    if !LIGHT {
+    if !LIGHT || is_dark(charges[source].power) {
         let r2 = square(o);
         return min(r2.x, min(r2.y, r2.z));
     }
@@ -189,30 +198,79 @@ fn moved_to(e: Expansion, before: Place, place: Place) -> Expansion {
     return moved_apart(e, minus(place, before));
 }
 
+// What a source sends, one point after the other: light that entered as one or in three strata, then what the surface sends. A loop, for software
+// adapters run through every branch.
+struct Parts {
+    charge: Charge,
+    strata: Strata,
+    mean: Mean,
+    // Of light, and of all.
+    of_light: u32,
+    count: u32,
+}
+
+struct Part {
+    charge: Charge,
+    ways: vec4f,
+    square: vec4f,
+}
+
+fn parts(source: u32, d: Places) -> Parts {
+    var p: Parts;
+    if LIGHT {
+        p.charge = charges[source];
+        p.strata = strata[source];
+        p.mean = all_strata(p.strata);
+        let r2 = square(d);
+        let reach = deepest(p.strata);
+        let is_one = is_dark(p.charge.power) || reach * reach < SHALLOW * SHALLOW * min(min(r2.x, r2.y), r2.z);
+        p.of_light = select(3u, 1u, is_one);
+        let share = select(1.0 / 3.0, 1.0, is_one);
+        p.charge = Charge(share * p.charge.power, share * p.charge.x, share * p.charge.y, share * p.charge.z);
+    }
+    p.count = p.of_light;
+    if SURFACE { p.count += 1u; }
+    return p;
+}
+
+fn part(p: ptr<function, Parts>, source: u32, k: u32) -> Part {
+    if SURFACE && k >= (*p).of_light {
+        let own = charges[transport.source_count + source];
+        let sign = select(1.0, -1.0, LIGHT);
+        return Part(Charge(sign * own.power, sign * own.x, sign * own.y, sign * own.z), vec4f(0.0), vec4f(0.0));
+    }
+    if (*p).of_light == 1u { return Part((*p).charge, (*p).mean.mean, (*p).mean.square); }
+    return Part((*p).charge, ways((*p).strata, k), vec4f(0.0));
+}
+
 // Adds what a source sends to a group of receivers of this size.
 fn collect(e: ptr<function, Expansion>, source: u32, place: Place, size: f32) {
     let d = minus(place, together(bounds[source].xyz));
     let shape = shapes[source];
-    if LIGHT {
-        let own = charges[source];
-        let where_to = strata[source];
-        let direction = where_to.direction;
-        let reach = deepest(where_to);
-        let r2 = square(d);
-        if reach * reach < SHALLOW * SHALLOW * min(min(r2.x, r2.y), r2.z) {
-            let mean = (ways(where_to, 0u) + ways(where_to, 1u) + ways(where_to, 2u)) / 3.0;
-            let moved_charge = displaced(own, direction, mean);
-            add(e, own.power, moved_charge, d, shape, size);
-        } else {
-            let third = Charge(own.power / 3.0, own.x / 3.0, own.y / 3.0, own.z / 3.0);
-            for (var k = 0u; k < 3u; k++) { add(e, third.power, third, beyond(d, -direction, ways(where_to, k)), shape, size); }
-        }
+    var all = parts(source, d);
+    for (var k = 0u; k < all.count; k++) {
+        let own = part(&all, source, k);
+        let u = all.strata.direction;
+        add(e, own.charge, beyond(d, -u, own.ways), shape, size, Line(u, own.square));
     }
-    if SURFACE {
-        let own = charges[transport.source_count + source];
-        let sign = select(1.0, -1.0, LIGHT);
-        add(e, sign * own.power, Charge(own.power, sign * own.x, sign * own.y, sign * own.z), d, shape, size);
-    }
+}
+
+// All strata as one: their mean way, and the mean square of what they are apart.
+struct Mean {
+    mean: vec4f,
+    square: vec4f,
+}
+
+fn all_strata(s: Strata) -> Mean {
+    let a = ways(s, 0u);
+    let b = ways(s, 1u);
+    let c = ways(s, 2u);
+    let mean = (a + b + c) / 3.0;
+    return Mean(mean, (a * a + b * b + c * c) / 3.0 - mean * mean);
+}
+
+fn is_dark(power: vec4f) -> bool {
+    return all(power.rgb <= vec3f(0.0));
 }
 
 fn deepest(s: Strata) -> f32 {
@@ -221,12 +279,6 @@ fn deepest(s: Strata) -> f32 {
 
 fn ways(s: Strata, k: u32) -> vec4f {
     return vec4f(s.ways[k].rgb, 0.0);
-}
-
-// A charge whose power lies so far along a direction, seen from its middle.
-fn displaced(c: Charge, direction: vec3f, ways: vec4f) -> Charge {
-    let moment = c.power * ways;
-    return Charge(c.power, c.x + moment * direction.x, c.y + moment * direction.y, c.z + moment * direction.z);
 }
 
 fn count_evaluations(e: ptr<function, Expansion>, share: f32) {
@@ -249,40 +301,30 @@ fn arriving(source: u32, texel: u32, receiver: vec3f) -> vec4f {
     let d = beyond(together(receiver - bounds[source].xyz), -shapes[texel].normal, below(texel));
     let shape = shapes[source];
     var sum = vec4f(0.0);
-    if LIGHT {
-        let own = charges[source];
-        let where_to = strata[source];
-        let reach = deepest(where_to);
-        let r2 = square(d);
-        if reach * reach < SHALLOW * SHALLOW * min(min(r2.x, r2.y), r2.z) {
-            let mean = (ways(where_to, 0u) + ways(where_to, 1u) + ways(where_to, 2u)) / 3.0;
-            sum += sent(displaced(own, where_to.direction, mean), d, shape);
-        } else {
-            // In w there is nothing but a moment.
-            let third = Charge(own.power / 3.0, own.x / 3.0, own.y / 3.0, own.z / 3.0);
-            for (var k = 0u; k < 3u; k++) { sum += sent(third, beyond(d, -where_to.direction, ways(where_to, k)), shape); }
-        }
-    }
-    if SURFACE {
-        let from_surface = sent(charges[transport.source_count + source], d, shape);
-        sum += select(from_surface, -from_surface, LIGHT);
+    var all = parts(source, d);
+    for (var k = 0u; k < all.count; k++) {
+        let own = part(&all, source, k);
+        let u = all.strata.direction;
+        sum += sent(own.charge, beyond(d, -u, own.ways), shape, Line(u, own.square));
     }
     return sum;
 }
 
 // Receivers on and under a source see it as a disc.
-fn sent(c: Charge, o: Places, shape: Shape) -> vec4f {
+fn sent(c: Charge, o: Places, shape: Shape, line: Line) -> vec4f {
     let r2 = square(o);
     let a2 = 2.0 * shape.spread * shape.spread;
     let far = max(r2, vec4f(LEAST_R2));
     let jet = potential_jet(far);
     let t = c.x * o.x + c.y * o.y + c.z * o.z;
-    let more = spread_out(jet, o, shape);
+    let more = spread_out(jet, o, shape, line);
     var of_point = c.power * jet.value * more.power - 2.0 * t * more.moment * jet.first;
     of_point += turned(c, jet, o, shape);
     let near = r2 < vec4f(2.0 * a2);
-    if !any(near) { return of_point; }
-    return select(of_point, of_disc(c, o, r2, a2, shape.normal), near);
+    var sum = of_point;
+    // A loop in place of a branch, as above.
+    for (var k = select(1u, 0u, any(near)); k < 1u; k++) { sum = select(of_point, of_disc(c, o, r2, a2, shape.normal), near); }
+    return sum;
 }
 
 // A disc of radius √a2 about whose axis the receiver is: on it in closed form, beside it as from further up, which is within 2 % in its plane.

@@ -9,7 +9,8 @@ struct Parabola {
     curve: vec3f,
     // Share of that light that comes from all around.
     around: f32,
-    beam: vec3f,
+    // Share of the light of lamps that gets there.
+    open: vec3f,
     padding0: f32,
     // Irradiance of that light.
     light: vec3f,

@@ -6,6 +6,9 @@ const NO_SITE: u32 = 0xffffffffu;
 // Discs that a ray grazes by less are not met.
 const LEAST_COSINE: f32 = 0.02;
 
+// Square of a mean normal from which on a group is flat.
+const FLAT: f32 = 0.9;
+
 struct Crossing {
     // Along the ray, mm; FAR where there is none.
     t: f32,
@@ -15,20 +18,35 @@ struct Crossing {
 
 // The first crossing beyond `begin` that leaves the body (side 1) or enters it (side −1).
 fn first_crossing(origin: vec3f, direction: vec3f, begin: f32, side: f32) -> Crossing {
-    var best = Crossing(FAR, NO_SITE);
+    return crossing(origin, direction, begin, FAR, side, false);
+}
+
+fn crossing(origin: vec3f, direction: vec3f, begin: f32, most: f32, side: f32, any_will_do: bool) -> Crossing {
+    var best = Crossing(most, NO_SITE);
+    let beyond = sqrt(transport.reach_squared);
     var level = transport.top_level;
     var node = 0u;
     loop {
         if level > 0u {
-            let here = nodes[node_index(level, node)];
-            let offset = here.centre - origin;
-            let reach = here.radius + sqrt(transport.reach_squared);
+            let index = node_index(level, node);
+            let offset = nodes[index].centre - origin;
+            let reach = nodes[index].radius + beyond;
             let along = dot(offset, direction);
             let away = offset - along * direction;
             if dot(away, away) < reach * reach && along + reach > begin && along - reach < best.t {
-                level -= 1u;
-                node *= 4u;
-                continue;
+                let normal = nodes[index].normal;
+                // Four texels that face one way are as good as each of them.
+                if level > 1u || dot(normal, normal) < FLAT {
+                    level -= 1u;
+                    node *= 4u;
+                    continue;
+                }
+                let cosine = dot(normal, direction);
+                if cosine * side > LEAST_COSINE {
+                    let t = dot(offset, normal) / cosine;
+                    let beside = offset - direction * t;
+                    if t > begin && t < best.t && dot(beside, beside) < nodes[index].radius * nodes[index].radius { best = Crossing(t, node * 4u); }
+                }
             }
         } else {
             let place = texel_positions[node];
@@ -38,7 +56,7 @@ fn first_crossing(origin: vec3f, direction: vec3f, begin: f32, side: f32) -> Cro
                 let offset = place.xyz - origin;
                 let t = dot(offset, normal) / cosine;
                 let beside = offset - direction * t;
-                if t > begin && t < best.t && dot(beside, beside) < 0.5 * place.w { best = Crossing(t, node); }
+                if t > begin && t < best.t && dot(beside, beside) < max(0.5 * place.w, transport.reach_squared) { best = Crossing(t, node); }
             }
         }
         node += 1u;
@@ -46,8 +64,9 @@ fn first_crossing(origin: vec3f, direction: vec3f, begin: f32, side: f32) -> Cro
             node = (node + 3u) / 4u;
             level += 1u;
         }
-        if level == transport.top_level { break; }
+        if level == transport.top_level || (any_will_do && best.site != NO_SITE) { break; }
     }
+    if best.site == NO_SITE { best.t = FAR; }
     return best;
 }
 

@@ -36,13 +36,14 @@ fn parabola(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups
     own.cosine = source.cosine;
     own.around = source.ways[0].w;
     own.light = light;
-    own.beam = transport.albedo.rgb * light / (transport.diffusion.rgb * rate);
-    own.surface = fluence[transport.texel_count + index].rgb + own.beam;
+    own.open = entered[transport.texel_count + index].rgb;
+    let beam = transport.albedo.rgb * light / (transport.diffusion.rgb * rate);
+    own.surface = fluence[transport.texel_count + index].rgb + beam;
     let comes_in = leaving[transport.source_count + index].rgb;
     let flux = transport.robin.rgb * (fluence[transport.texel_count + index].rgb - 4.0 * comes_in);
     let under = deeper[index].rgb / clamp(deeper[index].w, 0.2, 1.2);
-    let slope = flux / transport.diffusion.rgb - own.beam * rate;
-    let rise = under + own.beam * exp(-rate * depth) - own.surface;
+    let slope = flux / transport.diffusion.rgb - beam * rate;
+    let rise = under + beam * exp(-rate * depth) - own.surface;
     let thin = depth * transport.extinction.rgb <= vec3f(1e-3);
     own.slope = select(slope, vec3f(0.0), thin);
     own.curve = select((rise / max(depth, vec3f(1e-20)) - slope) / max(depth, vec3f(1e-20)), vec3f(0.0), thin);

@@ -16,8 +16,6 @@ const REACH: f32 = 2.5;
 const STEPS: u32 = 12u;
 // A ray that grazes the surface by less runs along it.
 const GRAZING: f32 = 0.02;
-// Rays leave the surface beyond so many of a texel's widths.
-const CLEAR: f32 = 1.0;
 
 // Depth of a ray that leaves at this cosine, so far from where it does, mm.
 fn depth_along(thickness: f32, cosine: f32, s: vec3f, chord: f32) -> vec3f {
@@ -30,7 +28,8 @@ fn fluence_along(p: Parabola, cosine: f32, s: vec3f, chord: f32) -> vec3f {
     let depth = min(depth_along(p.thickness, cosine, s, chord), reach);
     let shifted = depth - hopf_shift(depth * transport.extinction.rgb) / transport.extinction.rgb;
     let rate = transport.extinction.rgb / max(p.cosine, 0.05);
-    return p.surface + shifted * (p.slope + shifted * p.curve) - p.beam * exp(-rate * depth);
+    let beam = transport.albedo.rgb * p.light / (transport.diffusion.rgb * rate);
+    return p.surface + shifted * (p.slope + shifted * p.curve) - beam * exp(-rate * depth);
 }
 
 // As seen from the eye: what leaves if all that leaves were as bright as what goes there.
@@ -83,8 +82,8 @@ fn many(own: Parabola, far: Crossing, cosine: f32, chord: f32, direction: vec3f)
 }
 
 // Where along a ray of view the way to the light is measured, in mean free paths of the channel that sees furthest. In between it is linear.
-const PLACES: u32 = 8u;
-const SPACING: array<f32, 8> = array<f32, 8>(0.0, 0.12, 0.3, 0.6, 1.1, 1.9, 3.2, 6.0);
+const PLACES: u32 = 6u;
+const SPACING: array<f32, 6> = array<f32, 6>(0.0, 0.25, 0.65, 1.3, 2.5, 5.0);
 
 // Scattered once.
 fn once(own: Parabola, position: vec3f, direction: vec3f, cosine: f32, chord: f32, width: f32) -> vec3f {
@@ -129,11 +128,11 @@ fn arriving_at(index: u32, position: vec3f, width: f32) -> Arriving {
     let comes = arrival(index, position, width * width, vec3f(0.0, 1.0, 0.0));
     var far = FAR;
     if lighting.lights[index].kind == POINT { far = length(lighting.lights[index].vector - position); }
-    let out = way_out(position, comes.to_light, far, width);
-    if out.t == FAR { return Arriving(vec3f(0.0), 0.0); }
-    let entry = position + comes.to_light * out.last;
-    let is_dark = any(entry < lighting.lights[index].region_low) || any(entry > lighting.lights[index].region_high);
-    return Arriving(select(comes.strength, vec3f(0.0), is_dark), out.t);
+    let entry = crossing(position, comes.to_light, 0.0, far, 1.0, false);
+    if entry.site == NO_SITE { return Arriving(vec3f(0.0), 0.0); }
+    let at = texel_positions[entry.site].xyz;
+    let is_dark = any(at < lighting.lights[index].region_low) || any(at > lighting.lights[index].region_high);
+    return Arriving(select(comes.strength * parabolas[entry.site].open, vec3f(0.0), is_dark), entry.t);
 }
 
 // Of an even sky, used up along a ray of view.
@@ -150,29 +149,4 @@ fn around(own: Parabola, cosine: f32, chord: f32) -> vec3f {
         sum += exp(-1.2 * x) / (1.0 + 1.028 * pow(max(x, vec3f(1e-12)), vec3f(0.655)));
     }
     return own.around * own.light * 2.0 * share * sum / f32(STEPS);
-}
-
-struct Out {
-    // How much of the way is inside, mm; FAR where the surface has no end there.
-    t: f32,
-    // Where it is left last, mm.
-    last: f32,
-}
-
-// From a place inside.
-fn way_out(position: vec3f, direction: vec3f, most: f32, width: f32) -> Out {
-    let first = first_crossing(position, direction, 0.0, 1.0).t;
-    if first >= most { return Out(select(most, FAR, most == FAR), most); }
-    var out = Out(first, first);
-    var t = first + CLEAR * width;
-    for (var k = 1u; k < MOST_SEGMENTS; k++) {
-        let enters = first_crossing(position, direction, t, -1.0).t;
-        if enters >= most { break; }
-        let leaves = min(first_crossing(position, direction, enters, 1.0).t, most);
-        if leaves == FAR { break; }
-        out.t += leaves - enters;
-        out.last = leaves;
-        t = leaves + CLEAR * width;
-    }
-    return out;
 }

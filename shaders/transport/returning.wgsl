@@ -23,6 +23,8 @@ struct Level {
 @group(0) @binding(6) var<storage, read_write> leaving: array<vec4f>;
 @group(0) @binding(7) var<storage, read_write> charges: array<Charge>;
 
+// Texels whose rays are taken together.
+const GROUP: u32 = 16u;
 // Opening angle, squared.
 const THETA_SQUARED: f32 = 0.8;
 fn returning_place(texel: u32) -> u32 {
@@ -86,9 +88,9 @@ fn charge_texel(index: u32, fluence: vec3f) {
 
 // Of what leaves elsewhere, what falls on a texel, W/m². Form factors know no obstacles; they are scaled down to what the texel really sees of the body.
 fn returning(index: u32, normal: vec3f) -> vec3f {
-    // Few rays tell: those of four texels.
-    let first = index / 4u * 4u;
-    let last = min(first + 4u, transport.texel_count);
+    // Few rays tell: those of a group of texels.
+    let first = index / GROUP * GROUP;
+    let last = min(first + GROUP, transport.texel_count);
     var hidden = 0.0;
     for (var k = first; k < last; k++) { hidden += entered[k].w; }
     hidden /= f32(last - first);

@@ -9,13 +9,15 @@
 @group(0) @binding(6) var<storage, read> nodes: array<Node>;
 @group(0) @binding(7) var<storage, read_write> charges: array<Charge>;
 @group(0) @binding(8) var<storage, read_write> strata: array<Strata>;
-// Irradiance that entered, W/m², and how much of the sky the body hides.
+// Of each texel irradiance that entered, W/m², and how much of the sky the body hides; then which share of the light of lamps gets there.
 @group(0) @binding(9) var<storage, read_write> entered: array<vec4f>;
 
 // Texels over which the surface's curvature is measured.
 const PATCH: u32 = 16u;
 // Directions of the sky from each texel.
-const SKY: u32 = 8u;
+const SKY: u32 = 2u;
+// Share of a lamp's light from which on nothing is in its way.
+const LIT: f32 = 0.98;
 // Rays leave the surface beyond so many of a texel's widths.
 const CLEAR: f32 = 1.0;
 
@@ -32,6 +34,7 @@ fn enter(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: v
     var diffuse = texel_irradiance[index].rgb;
     var beam = vec3f(0.0);
     var through = vec3f(0.0);
+    var unshadowed = vec3f(0.0);
     var direction = vec3f(0.0);
     var cosines = 0.0;
     for (var k = 0u; k < lighting.light_count; k++) {
@@ -43,7 +46,10 @@ fn enter(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: v
         let inside = refracted_cosine(transport.eta, outside);
         let inwards = (outside * normal - arriving.to_light) / transport.eta - normal * inside;
         let far = select(FAR, length(lighting.lights[k].vector - position), lighting.lights[k].kind == POINT);
-        let crossed = way_inside(position, arriving.to_light, CLEAR * width, far);
+        unshadowed += light;
+        // Depth maps say who is lit, where there is no sky to be told from.
+        var crossed = 0.0;
+        if lighting.ambient_count > 0u || any(diffuse < LIT * light) { crossed = way_inside(position, arriving.to_light, CLEAR * width, far); }
         // What the depth map lets through comes straight; the rest through what is in the way.
         var straight = vec3f(0.0);
         if crossed == 0.0 || lighting.ambient_count == 0u { straight = min(light, diffuse); }
@@ -71,7 +77,8 @@ fn enter(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: v
         cosines = 1.0;
     }
     let steepness = length(direction);
-    let chord = first_crossing(position, direction / max(steepness, 1e-6), 0.1 * width, 1.0).t;
+    var chord = thickness;
+    if dot(direction, normal) > -0.9999 * steepness { chord = first_crossing(position, direction / max(steepness, 1e-6), 0.1 * width, 1.0).t; }
     let spread_out = 0.9 * max(1.0 - steepness * steepness, 0.0);
     let bend = 0.5 * curvature(index);
     let deep = max(-dot(normal, direction), 0.0);
@@ -100,6 +107,8 @@ fn enter(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: v
         vec4f(vec3f(0.0), facing.y),
         vec4f(vec3f(0.0), facing.z));
     entered[index] = vec4f(light, hidden_sky(index, position, normal, width));
+    let open = select(vec3f(0.0), (beam + through) / max(unshadowed, vec3f(1e-30)), unshadowed > vec3f(0.0));
+    entered[transport.texel_count + index] = vec4f(min(open, vec3f(1.0)), 0.0);
 }
 
 // Mean depth of one of three strata of equal power, in mean free paths, of a ray that ends at an optical depth and leaves this share behind.
@@ -140,7 +149,7 @@ fn hidden_sky(index: u32, position: vec3f, normal: vec3f, width: f32) -> f32 {
         let angle = turn + 2.3999632 * f32(k);
         let aside = sqrt(u);
         let direction = sqrt(1.0 - u) * normal + aside * (cos(angle) * tangent + sin(angle) * bitangent);
-        if first_crossing(position, direction, CLEAR * width, -1.0).t < FAR { hidden += 1.0; }
+        if crossing(position, direction, CLEAR * width, FAR, -1.0, true).site != NO_SITE { hidden += 1.0; }
     }
     return hidden / f32(SKY);
 }

@@ -61,7 +61,7 @@ impl Studio {
               let texels = g.len(); let mut off = 0; let mut count = texels; let mut level = 0; while count > 1 && level < 3 { let k = 1692 >> (2*level); eprintln!("level {level} {:?}", &bb[off + k]); let next = count.div_ceil(4); off += if level == 0 { 4 * next } else { 4 * next }; count = next; level += 1; }
               let mut o: Vec<usize> = (0..g.len()).collect(); o.sort_by(|a, b| g[*b][0].abs().total_cmp(&g[*a][0].abs())); for i in o.iter().take(5) { eprintln!("worst {i} {:?} at {:?}", g[*i], n[*i]); }
               o.sort_by(|a, b| (g[*b][3]-0.5).abs().total_cmp(&(g[*a][3]-0.5).abs())); for i in o.iter().take(5) { eprintln!("worst closure {i} {:?} at {:?}", g[*i], n[*i]); } }
-            if let Some(b) = self.body.outputs().lists { let u: Vec<u32> = translume::readback::buffer(device, queue, b).unwrap_or_default(); eprintln!("lists {:?} of {}", &u[..2], u.len()); }
+            if let Some(b) = self.body.debug().get(10) { let u: Vec<u32> = translume::readback::buffer(device, queue, b).unwrap_or_default(); eprintln!("lists {:?} of {}", &u[..2], u.len()); }
         } }
         Ok(())
     }

@@ -333,7 +333,9 @@ pub(crate) struct NodeLayout {
     pub scatter: f32,
     pub texels: f32,
     pub spread: f32,
-    pub padding: f32,
+    pub padding_0: f32,
+    pub normal: [f32; 3],
+    pub padding_1: f32,
 }
 
 /// What a source sends.
@@ -365,7 +367,7 @@ pub(crate) struct ParabolaLayout {
     pub cosine: f32,
     pub curve: [f32; 3],
     pub around: f32,
-    pub beam: [f32; 3],
+    pub open: [f32; 3],
     pub padding_0: f32,
     pub light: [f32; 3],
     pub padding_1: f32,

@@ -1,7 +1,7 @@
 //! The boundary solver against its dense twin, whose rays are cast through the mesh.
 
 use std::sync::Arc;
-use translume::{DirectionalLight, Light, Medium, Transport};
+use translume::{DirectionalLight, Light, Medium, Method, Transport};
 use translume_reference::path::{Closed, Volume};
 use translume_reference::transport::{Body, Solution, sites};
 use translume_tests::{Check, Fixture, Model, Pose, at_most, holds, light, notices, sphere_with};
@@ -13,7 +13,7 @@ fn medium() -> Medium {
 
 fn agrees(model: &Arc<Model>, medium: Medium, lights: &[Light], bound: f64) -> Check {
     let mut fixture = Fixture::new(model, |d| {
-        (d.medium, d.transport, d.method) = (medium, Transport::Boundary, translume::Method::Dual { theta: std::env::var("TH").map_or(0.65, |t| t.parse().unwrap()) });
+        (d.medium, d.transport, d.method) = (medium, Transport::Boundary, Method::default());
     });
     let pose = Pose::rest(model.mesh.targets.len());
     fixture.run(&pose.frame(lights));
@@ -32,36 +32,6 @@ fn agrees(model: &Arc<Model>, medium: Medium, lights: &[Light], bound: f64) -> C
     let sources = fixture.sources();
     let solution = Solution::new(body, sites(&model.atlas, &surface, &sources), 8);
     eprintln!("residual {:?}", solution.residual());
-    let read = |k: usize| -> Vec<[f32; 4]> { translume::readback::buffer(&translume_tests::gpu().device, &translume_tests::gpu().queue, &fixture.body.debug()[k]).unwrap() };
-    let show = |what: &str, mine: &[[f32; 4]], exact: &dyn Fn(usize) -> [f64; 4]| {
-        for k in 0..4 {
-            let (mut square, mut sum, mut count, mut signed) = (0.0, 0.0, 0.0, 0.0);
-            for (i, source) in sources.iter().enumerate().filter(|(_, source)| source.area > 0.0) {
-                let e = exact(i)[k];
-                square += source.area * (f64::from(mine[i][k]) - e).powi(2);
-                signed += source.area * (f64::from(mine[i][k]) - e);
-                sum += source.area * e;
-                count += source.area;
-            }
-            eprintln!("{what} {k}: rms {:.4} bias {:+.4} mean {:.4e}", (square / count).sqrt() / (sum / count), signed / sum, sum / count);
-        }
-    };
-    let four = |v: [f64; 3], w: f64| [v[0], v[1], v[2], w];
-    show("given", &read(0), &|i| four(solution.given()[i], solution.closure(i)));
-    show("fluence", &read(1), &|i| four(solution.fluence()[i], 1.0));
-    let g = read(0); let nan: Vec<_> = (0..g.len()).filter(|&i| g[i].iter().any(|x| x.is_nan())).collect(); eprintln!("NaN {nan:?} of {}", g.len());
-    for &i in nan.iter().take(3) { eprintln!("{:?} {:?}", g[i], sources[i]); }
-    let mut order: Vec<usize> = (0..g.len()).filter(|&i| sources[i].area > 0.0).collect();
-    order.sort_by(|&a, &b| { let d = |i: usize| (f64::from(g[i][3]) - solution.closure(i)).abs() * sources[i].area.sqrt(); d(b).total_cmp(&d(a)) });
-    for &i in order.iter().take(8) {
-        let near: Vec<_> = (0..g.len()).filter(|&j| j != i && sources[j].area > 0.0).map(|j| { let d = glam::DVec3::from(sources[j].position) - glam::DVec3::from(sources[i].position); (d.length(), d.dot(sources[j].normal.into()), sources[j].area) }).filter(|x| x.0 < 7.0).collect();
-        eprintln!("worst {i}: gpu {} twin {} area {:.2} near {:.2?}", g[i][3], solution.closure(i), sources[i].area, near); }
-    for i in [100, 500, 1000] { eprintln!("{i}: {:?} {:?} {:?} | {:?}", read(0)[i], solution.given()[i], solution.closure(i), read(1)[i]); }
-    {
-        let s = read(3); for i in [100, 500, 1000] { eprintln!("strata {:?}", &s[4*i..4*i+4]); }
-        let s = read(4); for i in [100, 500, 1000] { eprintln!("charge {:?}", &s[4*i..4*i+4]); }
-        let s = read(5); for i in [100, 500, 1000] { eprintln!("shape {:?}", &s[2*i..2*i+2]); }
-    }
     let mut worst: f64 = 0.0;
     for k in 0..3 {
         let (mut square, mut sum, mut count, mut signed) = (0.0, 0.0, 0.0, 0.0);
@@ -85,4 +55,47 @@ fn exitance_is_that_of_dense_sums() {
     let sun = Light::Directional(DirectionalLight { irradiance: [3.0; 3], ..Default::default() });
     holds(agrees(&model, medium(), &[sun], 0.02));
     notices(agrees(&model, medium(), &[sun], 1e-6));
+}
+
+#[test]
+fn frames() {
+    let mesh = translume_mesh::builtin::creature_with(20000);
+    let model = Model::new(mesh, std::env::var("AT").map_or(192, |t| t.parse().unwrap()));
+    let medium = Medium { ior: 1.0, ..Medium::SKIMMILK };
+    let camera = translume::LookAt { eye: [60.0, 89.0, 250.0], target: [0.0, 49.0, 0.0], up: [0.0, 1.0, 0.0], horizontal_fov: 0.5, aspect: 1.0, near: 1.0, far: 1000.0 };
+    let frame = |k: f32| {
+        let mut pose = Pose::rest(1);
+        pose.weights = vec![0.0];
+        pose.warp.twist = k.to_radians();
+        let (sin, cos) = (0.05236 * k).sin_cos();
+        (pose, [Light::Directional(DirectionalLight { to_light: [sin, 0.3, cos], irradiance: [3.0; 3], ..Default::default() })])
+    };
+    for transport in Transport::ALL {
+        let body = || Fixture::new(&model, |d| (d.medium, d.transport, d.method, d.profile) = (medium, transport, Method::default(), translume::Profile::default()));
+        let mut warm = body();
+        let mut times = Vec::new();
+        for k in 0..6 {
+            let (pose, lights) = frame(k as f32);
+            let mut f = pose.frame(&lights);
+            let look = translume::Camera::from(camera);
+            f.view = Some(translume::View { camera: look, pixels: [512, 512] });
+            if transport != Transport::BoundaryLayers { f.view = None; }
+            let start = std::time::Instant::now();
+            warm.run(&f);
+            let exitance = warm.exitance();
+            times.push(start.elapsed().as_secs_f64());
+            if k == 5 || k == 1 {
+                let mut cold = body();
+                cold.run(&f);
+                let exact = cold.exitance();
+                let areas: Vec<f64> = warm.sources().iter().map(|s| s.area).collect();
+                for c in 0..3 {
+                    let (mut square, mut sum, mut count) = (0.0, 0.0, 0.0);
+                    for i in 0..areas.len() { square += areas[i] * (exitance[i][c] - exact[i][c]).powi(2); sum += areas[i] * exact[i][c]; count += areas[i]; }
+                    eprintln!("frame {k} {transport:?} lag {c}: {:.4}", (square / count).sqrt() / (sum / count));
+                }
+            }
+        }
+        eprintln!("{transport:?} {} texels: {times:.3?}", warm.body.texels());
+    }
 }

@@ -194,13 +194,13 @@ fn rust_and_wgsl_agree() {
         SITES,
         "Node",
         NodeLayout,
-        [centre, radius, middle, reach, scatter, texels, spread]
+        [centre, radius, middle, reach, scatter, texels, spread, normal]
     );
     check!(
         PICTURE,
         "Parabola",
         ParabolaLayout,
-        [surface, thickness, slope, cosine, curve, around, beam, light]
+        [surface, thickness, slope, cosine, curve, around, open, light]
     );
     check!(
         KRYLOV,

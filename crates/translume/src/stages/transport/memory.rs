@@ -73,9 +73,8 @@ impl TransportMemory {
         let shapes = storage("shapes", sizes.shapes);
         let charges = storage("charges", sizes.charges);
         let strata = storage("strata", sizes.strata);
-        let [entered, given, sent, deeper] =
-            ["entered", "given", "sent", "deeper"].map(|label| storage(label, sizes.vectors));
-        let fluence = storage("fluence", 2 * sizes.vectors);
+        let [given, sent, deeper] = ["given", "sent", "deeper"].map(|label| storage(label, sizes.vectors));
+        let [entered, fluence] = ["entered", "fluence"].map(|label| storage(label, 2 * sizes.vectors));
         let leaving = storage("leaving", sizes.leaving);
         let directions = storage("directions", sizes.directions);
         let state = storage("state", size_of::<StateLayout>() as u64);
@@ -198,7 +197,7 @@ impl TransportMemory {
                 ],
             ),
             bytes: bytes(tree),
-            debug: vec![given, fluence, leaving, strata, charges, shapes, bounds, deeper, entered, sent],
+            debug: vec![given, fluence, leaving, strata, charges, shapes, bounds, deeper, entered, sent, lists.lists.clone()],
             uniform,
             levels,
             state,
@@ -306,7 +305,7 @@ impl Sizes {
 pub(crate) fn bytes(tree: &Tree) -> u64 {
     let Sizes { bounds, nodes, shapes, charges, strata, leaving, directions, partial, parabolas, vectors } =
         Sizes::new(tree);
-    bounds + nodes + shapes + charges + strata + leaving + directions + partial + parabolas + 6 * vectors
+    bounds + nodes + shapes + charges + strata + leaving + directions + partial + parabolas + 7 * vectors
 }
 
 /// Whether a binding holds the largest of it.

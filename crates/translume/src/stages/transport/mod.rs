@@ -168,11 +168,13 @@ impl TransportStage {
     pub fn encode(&self, pass: &mut Pass<'_>, memory: &TransportMemory, tree: &Tree, steps: Steps) {
         let frame = Recorder { stage: self, memory, tree };
         let texels = tree.counts[0];
+        let rep = std::env::var("TL_REP").unwrap_or_default();
+        let n = |name: &str| if rep == name { 5 } else { 1 };
         if steps.tries > 0 {
-            frame.up(pass, &memory.sites, |level| &self.sites[usize::from(level > 1)]);
-            frame.each(pass, &self.enter, &memory.source);
+            for _ in 0..n("sites") { frame.up(pass, &memory.sites, |level| &self.sites[usize::from(level > 1)]); }
+            for _ in 0..n("enter") { frame.each(pass, &self.enter, &memory.source); }
             frame.up(pass, &memory.merge, |_| &self.merge_light);
-            frame.sum(pass, &self.light, &memory.given);
+            for _ in 0..n("light") { frame.sum(pass, &self.light, &memory.given); }
             let krylov = &self.krylov;
             frame.groups(pass, &krylov.measure);
             frame.one(pass, &krylov.settle_mean);
@@ -181,8 +183,10 @@ impl TransportStage {
                 frame.apply(pass);
                 frame.each(pass, &krylov.adopt, &memory.krylov);
             }
-            frame.minimise(pass);
+            for _ in 0..n("minimise") { frame.minimise(pass); }
             for _ in 0..steps.tries {
+                for _ in 0..n("surface") { frame.sum(pass, &self.surface, &memory.sent); }
+                for _ in 0..n("charge") { frame.charge(pass, 0); }
                 frame.apply(pass);
                 frame.each(pass, &krylov.take, &memory.krylov);
                 frame.groups(pass, &krylov.project_direction);
@@ -193,7 +197,7 @@ impl TransportStage {
             }
             frame.charge(pass, 1);
             if steps.seen {
-                frame.sum(pass, &self.below, &memory.deeper);
+                for _ in 0..n("below") { frame.sum(pass, &self.below, &memory.deeper); }
                 frame.each(pass, &self.parabola, &memory.layer);
             }
         }
@@ -202,7 +206,7 @@ impl TransportStage {
         if steps.seen {
             pass.set_pipeline(&self.gathered);
             pass.set_bind_group(&memory.picture, &[]);
-            pass.dispatch(texels);
+            for _ in 0..n("picture") { pass.dispatch(texels); }
         }
     }
 }
