@@ -191,7 +191,7 @@ fn distance_square(source: u32, place: Place) -> f32 {
 
 // G is singular: near is near.
 fn smooth_square(texel: u32) -> f32 {
-    return 0.0;
+    return scatter.z_r_squared;
 }
 
 fn moved_to(e: Expansion, before: Place, place: Place) -> Expansion {

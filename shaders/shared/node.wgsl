@@ -11,10 +11,7 @@ struct Node {
     texels: f32,
     // Rms distance of the area from the centre.
     spread: f32,
-    padding0: f32,
-    // Mean normal by area; shorter where normals differ.
-    normal: vec3f,
-    padding1: f32,
+    padding: f32,
 }
 
 // A texel is a square of unknown turn; the circle around it leaves no gaps.

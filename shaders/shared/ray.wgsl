@@ -6,9 +6,6 @@ const NO_SITE: u32 = 0xffffffffu;
 // Discs that a ray grazes by less are not met.
 const LEAST_COSINE: f32 = 0.02;
 
-// Square of a mean normal from which on a group is flat.
-const FLAT: f32 = 0.9;
-
 struct Crossing {
     // Along the ray, mm; FAR where there is none.
     t: f32,
@@ -34,19 +31,9 @@ fn crossing(origin: vec3f, direction: vec3f, begin: f32, most: f32, side: f32, a
             let along = dot(offset, direction);
             let away = offset - along * direction;
             if dot(away, away) < reach * reach && along + reach > begin && along - reach < best.t {
-                let normal = nodes[index].normal;
-                // Four texels that face one way are as good as each of them.
-                if level > 1u || dot(normal, normal) < FLAT {
-                    level -= 1u;
-                    node *= 4u;
-                    continue;
-                }
-                let cosine = dot(normal, direction);
-                if cosine * side > LEAST_COSINE {
-                    let t = dot(offset, normal) / cosine;
-                    let beside = offset - direction * t;
-                    if t > begin && t < best.t && dot(beside, beside) < nodes[index].radius * nodes[index].radius { best = Crossing(t, node * 4u); }
-                }
+                level -= 1u;
+                node *= 4u;
+                continue;
             }
         } else {
             let place = texel_positions[node];

@@ -31,6 +31,13 @@ fn returning_place(texel: u32) -> u32 {
     return transport.source_count + texel;
 }
 
+// Γ follows from what leaves, and that from Γ: from none, a few times over, so that what the equation makes of a trial is linear in it.
+@compute @workgroup_size(64)
+fn forget(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_index) local: u32) {
+    let index = item_index(group, groups, local);
+    if index < transport.texel_count { leaving[returning_place(index)] = vec4f(0.0); }
+}
+
 // Of the trial, and of what was found.
 @compute @workgroup_size(64)
 fn leave(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_index) local: u32) {

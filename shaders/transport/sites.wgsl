@@ -25,7 +25,7 @@ struct Level {
 
 fn texel_node(index: u32) -> Node {
     let place = texel_positions[index];
-    return Node(place.xyz, disc_reach(place.w), place.xyz, 0.0, 0.0, 1.0, disc_spread(place.w), 0.0, vec3f(0.0), 0.0);
+    return Node(place.xyz, disc_reach(place.w), place.xyz, 0.0, 0.0, 1.0, disc_spread(place.w), 0.0);
 }
 
 @compute @workgroup_size(64)
@@ -65,7 +65,7 @@ fn store(node: u32, children: ptr<function, array<Node, 4>>) {
         area += shapes[level.child_sources + node * 4u + k].area;
         texels += (*children)[k].texels;
     }
-    var own = Node(vec3f(0.0), 0.0, vec3f(0.0), 0.0, 0.0, texels, 0.0, 0.0, vec3f(0.0), 0.0);
+    var own = Node(vec3f(0.0), 0.0, vec3f(0.0), 0.0, 0.0, texels, 0.0, 0.0);
     var normal = vec3f(0.0);
     var weights = vec4f(0.0);
     for (var k = 0u; k < count; k++) {
@@ -99,7 +99,6 @@ fn store(node: u32, children: ptr<function, array<Node, 4>>) {
     own.scatter = sqrt(receiving);
     let trace = sum.diagonal.x + sum.diagonal.y + sum.diagonal.z;
     own.spread = sqrt(trace);
-    own.normal = normal;
     let scale = select(0.0, 1.0 / trace, trace > 0.0);
     let moments = packed_moments(Moments(scale * sum.diagonal, scale * sum.mixed));
     let unit = select(0.0, 1.0 / own.spread, own.spread > 0.0);

@@ -15,7 +15,7 @@
 // Texels over which the surface's curvature is measured.
 const PATCH: u32 = 16u;
 // Directions of the sky from each texel.
-const SKY: u32 = 2u;
+const SKY: u32 = 4u;
 // Share of a lamp's light from which on nothing is in its way.
 const LIT: f32 = 0.98;
 // Rays leave the surface beyond so many of a texel's widths.

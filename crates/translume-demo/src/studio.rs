@@ -50,19 +50,6 @@ impl Studio {
         self.body.encode(&mut encoder);
         self.canvas.draw(&mut encoder, &self.view);
         queue.submit([encoder.finish()]);
-        if std::env::var("TL_STATE").is_ok() { if let Some(b) = self.body.outputs().solver {
-            let f: Vec<f32> = translume::readback::buffer(device, queue, b).unwrap_or_default();
-            let u: Vec<u32> = translume::readback::buffer(device, queue, b).unwrap_or_default();
-            eprintln!("mean {:?} weights {:?} scale {:?} residual {:?} state {:?}", &f[..4], &f[4..20], &f[20..24], &f[24..28], &u[28..32]);
-            for (k, b) in self.body.debug().iter().enumerate() { let v: Vec<f32> = translume::readback::buffer(device, queue, b).unwrap_or_default(); eprintln!("{k}: {} NaN of {}, max {:?}", v.iter().filter(|x| !x.is_finite()).count(), v.len(), v.iter().copied().filter(|x| x.is_finite()).fold(0.0f32, |a, b| a.max(b.abs()))); }
-            { let d = self.body.debug(); let g: Vec<[f32;4]> = translume::readback::buffer(device, queue, &d[0]).unwrap_or_default(); let n: Vec<[f32;4]> = translume::readback::buffer(device, queue, self.body.outputs().texel_positions).unwrap_or_default();
-              for i in 1684..1700 { eprintln!("at {i} {:?} {:?}", n[i], g[i]); }
-              let bb: Vec<[f32;4]> = translume::readback::buffer(device, queue, &d[6]).unwrap_or_default(); let sh: Vec<[f32;8]> = Vec::new(); let _ = sh;
-              let texels = g.len(); let mut off = 0; let mut count = texels; let mut level = 0; while count > 1 && level < 3 { let k = 1692 >> (2*level); eprintln!("level {level} {:?}", &bb[off + k]); let next = count.div_ceil(4); off += if level == 0 { 4 * next } else { 4 * next }; count = next; level += 1; }
-              let mut o: Vec<usize> = (0..g.len()).collect(); o.sort_by(|a, b| g[*b][0].abs().total_cmp(&g[*a][0].abs())); for i in o.iter().take(5) { eprintln!("worst {i} {:?} at {:?}", g[*i], n[*i]); }
-              o.sort_by(|a, b| (g[*b][3]-0.5).abs().total_cmp(&(g[*a][3]-0.5).abs())); for i in o.iter().take(5) { eprintln!("worst closure {i} {:?} at {:?}", g[*i], n[*i]); } }
-            if let Some(b) = self.body.debug().get(10) { let u: Vec<u32> = translume::readback::buffer(device, queue, b).unwrap_or_default(); eprintln!("lists {:?} of {}", &u[..2], u.len()); }
-        } }
         Ok(())
     }
 

@@ -333,9 +333,7 @@ pub(crate) struct NodeLayout {
     pub scatter: f32,
     pub texels: f32,
     pub spread: f32,
-    pub padding_0: f32,
-    pub normal: [f32; 3],
-    pub padding_1: f32,
+    pub padding: f32,
 }
 
 /// What a source sends.

@@ -85,7 +85,6 @@ pub(crate) fn layout(medium: &Medium, tree: &Tree, groups: u32, texel: f32) -> T
         packed
     };
     let boost = channels.map(|[_, albedo, ..]| (1.0 + shortfall(albedo)) as f32);
-    let boost = std::env::var("TL_BOOST").map_or(boost, |x| [x.parse().unwrap_or(0.0); 3]);
     TransportLayout {
         extinction: row(0, 0.0),
         albedo: row(1, 0.0),

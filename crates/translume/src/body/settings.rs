@@ -116,8 +116,6 @@ impl Body {
         Ok(())
     }
 
-    #[doc(hidden)]
-    pub fn debug(&self) -> &[wgpu::Buffer] { self.solver.debug() }
     /// How light goes through the body.
     #[must_use]
     pub fn transport(&self) -> Transport {

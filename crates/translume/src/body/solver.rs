@@ -56,7 +56,6 @@ impl Solver {
         Some(Recorded { memory, steps, is_first })
     }
 
-    pub fn debug(&self) -> &[wgpu::Buffer] { self.memory.as_ref().map_or(&[], |m| &m.debug) }
     pub fn state(&self) -> Option<&wgpu::Buffer> {
         self.memory.as_ref().map(TransportMemory::state)
     }
@@ -112,6 +111,7 @@ impl Body {
         let solver = &mut self.solver;
         solver.memory = solver.memory.take().filter(|memory| memory.serves(demand, tree, &self.limits));
         let mut changed = self.pending.contains(Stage::Scatter);
+        let moved = self.pending.contains(Stage::Deform);
         if solver.memory.is_none() {
             solver.is_first = true;
             changed = true;
@@ -135,7 +135,7 @@ impl Body {
         let solves = is_new || solver.unsettled > 0;
         solver.unsettled = if is_new { SETTLING } else { solver.unsettled.saturating_sub(1) };
         solver.steps = Steps {
-            moved: solves && !solver.is_first,
+            moved: moved && !solver.is_first,
             tries: if solves { TransportStage::tries(solver.is_first) } else { solver.steps.tries },
             seen,
         };

@@ -194,7 +194,7 @@ fn rust_and_wgsl_agree() {
         SITES,
         "Node",
         NodeLayout,
-        [centre, radius, middle, reach, scatter, texels, spread, normal]
+        [centre, radius, middle, reach, scatter, texels, spread]
     );
     check!(
         PICTURE,

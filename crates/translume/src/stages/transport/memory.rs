@@ -21,15 +21,11 @@ const TEXELS_PER_GROUP: u32 = 512;
 /// Directions, and the solution.
 const DIRECTIONS: u64 = 5;
 const PRODUCTS: u64 = 16;
-/// Nearer than this many mean free paths clusters need not look as small: G is singular there, but little of it comes from so near.
-const NEAR: f32 = 0.25;
-
 pub(crate) struct TransportMemory {
     uniform: wgpu::Buffer,
     levels: wgpu::Buffer,
     state: wgpu::Buffer,
     bytes: u64,
-    pub debug: Vec<wgpu::Buffer>,
     pub lists: Arc<Lists>,
     pub plan: Plan,
     pub groups: u32,
@@ -197,7 +193,6 @@ impl TransportMemory {
                 ],
             ),
             bytes: bytes(tree),
-            debug: vec![given, fluence, leaving, strata, charges, shapes, bounds, deeper, entered, sent, lists.lists.clone()],
             uniform,
             levels,
             state,
@@ -234,7 +229,6 @@ impl TransportMemory {
         let eye = self.layout.eye;
         self.layout = TransportLayout { eye, ..layout };
         queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&self.layout));
-        let nearest = layout.extinction[..3].iter().fold(f32::MAX, |least, &sigma| least.min(NEAR / sigma));
         let scatter = ScatterLayout {
             table: KernelTableLayout::default(),
             texel_count: layout.texel_count,
@@ -242,7 +236,8 @@ impl TransportMemory {
             source_count: 0,
             top_level: layout.top_level,
             theta_squared: 0.0,
-            z_r_squared: 0.0 * nearest,
+            // G is singular: near is near.
+            z_r_squared: 0.0,
             padding: [0; 2],
             sources: layout.sources,
             terms: [TermLayout::default(); 2],

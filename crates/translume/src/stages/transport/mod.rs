@@ -25,6 +25,9 @@ use wgpu::ComputePipeline;
 const COLD: u32 = 8;
 const WARM: u32 = 1;
 
+/// How often light that leaves a concave body is followed back into it.
+const RETURNS: u32 = 3;
+
 pub(crate) struct TransportStage {
     layouts: Layouts,
     sites: [ComputePipeline; 2],
@@ -36,6 +39,7 @@ pub(crate) struct TransportStage {
     light: [ComputePipeline; 2],
     surface: [ComputePipeline; 2],
     below: [ComputePipeline; 2],
+    forget: ComputePipeline,
     /// Of the trial, and of what was found.
     leave: [ComputePipeline; 2],
     merge_leaving: ComputePipeline,
@@ -135,6 +139,7 @@ impl TransportStage {
             light: sum(true, false, false),
             surface: sum(false, true, false),
             below: sum(true, true, true),
+            forget: pipeline(&layouts.returning, &returning, "forget"),
             leave: ["leave", "leave_found"].map(|entry| pipeline(&layouts.returning, &returning, entry)),
             merge_leaving: pipeline(&layouts.returning, &returning, "merge"),
             charge: ["charge", "charge_found"].map(|entry| pipeline(&layouts.returning, &returning, entry)),
@@ -162,19 +167,17 @@ impl TransportStage {
 
     /// Tries of a frame.
     pub fn tries(is_first: bool) -> u32 {
-        if is_first { std::env::var("TL_COLD").map_or(COLD, |x| x.parse().unwrap_or(COLD)) } else { WARM }
+        if is_first { COLD } else { WARM }
     }
 
     pub fn encode(&self, pass: &mut Pass<'_>, memory: &TransportMemory, tree: &Tree, steps: Steps) {
         let frame = Recorder { stage: self, memory, tree };
         let texels = tree.counts[0];
-        let rep = std::env::var("TL_REP").unwrap_or_default();
-        let n = |name: &str| if rep == name { 5 } else { 1 };
         if steps.tries > 0 {
-            for _ in 0..n("sites") { frame.up(pass, &memory.sites, |level| &self.sites[usize::from(level > 1)]); }
-            for _ in 0..n("enter") { frame.each(pass, &self.enter, &memory.source); }
+            frame.up(pass, &memory.sites, |level| &self.sites[usize::from(level > 1)]);
+            frame.each(pass, &self.enter, &memory.source);
             frame.up(pass, &memory.merge, |_| &self.merge_light);
-            for _ in 0..n("light") { frame.sum(pass, &self.light, &memory.given); }
+            frame.sum(pass, &self.light, &memory.given);
             let krylov = &self.krylov;
             frame.groups(pass, &krylov.measure);
             frame.one(pass, &krylov.settle_mean);
@@ -183,10 +186,8 @@ impl TransportStage {
                 frame.apply(pass);
                 frame.each(pass, &krylov.adopt, &memory.krylov);
             }
-            for _ in 0..n("minimise") { frame.minimise(pass); }
+            frame.minimise(pass);
             for _ in 0..steps.tries {
-                for _ in 0..n("surface") { frame.sum(pass, &self.surface, &memory.sent); }
-                for _ in 0..n("charge") { frame.charge(pass, 0); }
                 frame.apply(pass);
                 frame.each(pass, &krylov.take, &memory.krylov);
                 frame.groups(pass, &krylov.project_direction);
@@ -197,7 +198,7 @@ impl TransportStage {
             }
             frame.charge(pass, 1);
             if steps.seen {
-                for _ in 0..n("below") { frame.sum(pass, &self.below, &memory.deeper); }
+                frame.sum(pass, &self.below, &memory.deeper);
                 frame.each(pass, &self.parabola, &memory.layer);
             }
         }
@@ -206,7 +207,7 @@ impl TransportStage {
         if steps.seen {
             pass.set_pipeline(&self.gathered);
             pass.set_bind_group(&memory.picture, &[]);
-            for _ in 0..n("picture") { pass.dispatch(texels); }
+            pass.dispatch(texels);
         }
     }
 }
@@ -275,9 +276,12 @@ impl<'a> Recorder<'a> {
             pass.set_bind_group(&memory.returning, &[0]);
             pass.dispatch(self.tree.counts[0]);
         };
-        at_texels(pass, &stage.leave[which]);
-        self.up(pass, &memory.returning, |_| &stage.merge_leaving);
-        at_texels(pass, &stage.charge[which]);
+        at_texels(pass, &stage.forget);
+        for _ in 0..RETURNS {
+            at_texels(pass, &stage.leave[which]);
+            self.up(pass, &memory.returning, |_| &stage.merge_leaving);
+            at_texels(pass, &stage.charge[which]);
+        }
         self.up(pass, &memory.merge, |_| &stage.merge_surface);
     }
 
