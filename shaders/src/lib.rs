@@ -106,11 +106,23 @@ pub const SCATTER: Shader = scatter!("scatter", "kernel/chord.wgsl", "scatter.wg
 /// The same with sources off the surface, whose flux leaves.
 pub const SCATTER_ORIENTED: Shader = scatter!("scatter, oriented", "kernel/oriented.wgsl", "scatter.wgsl");
 /// Irradiance → radiant exitance with groups of texels at both ends.
-pub const DUAL: Shader =
-    scatter!("dual", "shared/lists.wgsl", "shared/walk.wgsl", "kernel/chord.wgsl", "shared/exitance_sum.wgsl", "dual.wgsl");
+pub const DUAL: Shader = scatter!(
+    "dual",
+    "shared/lists.wgsl",
+    "shared/walk.wgsl",
+    "kernel/chord.wgsl",
+    "shared/exitance_sum.wgsl",
+    "dual.wgsl"
+);
 /// The same with sources off the surface, whose flux leaves.
-pub const DUAL_ORIENTED: Shader =
-    scatter!("dual, oriented", "shared/lists.wgsl", "shared/walk.wgsl", "kernel/oriented.wgsl", "shared/exitance_sum.wgsl", "dual.wgsl");
+pub const DUAL_ORIENTED: Shader = scatter!(
+    "dual, oriented",
+    "shared/lists.wgsl",
+    "shared/walk.wgsl",
+    "kernel/oriented.wgsl",
+    "shared/exitance_sum.wgsl",
+    "dual.wgsl"
+);
 /// Texels → their tree of discs, for the boundary solver.
 pub const SITES: Shader = shader!(
     "sites",

@@ -293,10 +293,10 @@ pub struct Report {
     #[arg(value_name = "SCENE|MODEL")]
     pub models: Vec<String>,
     /// What to measure: methods (every method in every scene, against both truths; the default), gather (irradiance in every kind of light),
-    /// scatter (exitance against all pairs) or transport (the dipole, and what goes past it, against paths; on the CPU). Without a name the scenes that come with the program are added to those named.
+    /// scatter (exitance against all pairs) or transport (the dipole, and what goes past it, against paths; on the CPU and on the GPU). Without a name the scenes that come with the program are added to those named.
     #[arg(long, value_name = "NAME", num_args = 0..=1, default_missing_value = ALL)]
     pub suite: Option<String>,
-    /// Width of the atlas in texels; scatter also takes a quarter, a half and twice of that, transport 96.
+    /// Width of the atlas in texels; scatter also takes a quarter, a half and twice of that, transport 96 on the CPU.
     #[arg(long, value_name = "N", default_value_t = 512)]
     pub atlas: u32,
     /// The reference looks at every Nth texel: of gather by default 7, quickly 31; of scatter as many as give some hundred texels. Texels

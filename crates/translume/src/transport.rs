@@ -115,8 +115,8 @@ pub(crate) fn exit_scale(ior: f32) -> f32 {
 /// ρ: by how much single scattering has to count more, so that a half-space in an even light returns Chandrasekhar's albedo, over √(1 − α') in steps of
 /// .05: `translume_reference::transport::shortfall`, against which a test holds it.
 const SHORTFALL: [f64; 21] = [
-    0.3016, 0.2695, 0.2441, 0.2224, 0.2026, 0.1838, 0.1655, 0.1477, 0.1305, 0.1139, 0.0982, 0.0835, 0.0699, 0.0574,
-    0.0461, 0.0359, 0.0269, 0.0189, 0.0118, 0.0056, 0.0,
+    0.3016, 0.2695, 0.2441, 0.2224, 0.2026, 0.1838, 0.1655, 0.1477, 0.1305, 0.1139, 0.0982, 0.0835, 0.0699,
+    0.0574, 0.0461, 0.0359, 0.0269, 0.0189, 0.0118, 0.0056, 0.0,
 ];
 
 fn shortfall(albedo: f64) -> f64 {

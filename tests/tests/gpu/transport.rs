@@ -1,101 +1,182 @@
 //! The boundary solver against its dense twin, whose rays are cast through the mesh.
 
 use std::sync::Arc;
-use translume::{DirectionalLight, Light, Medium, Method, Transport};
+use translume::{
+    AmbientLight, Camera, DirectionalLight, Error, Light, LookAt, Medium, Method, Transport, View, readback,
+};
+use translume_reference::gather::Source;
 use translume_reference::path::{Closed, Volume};
 use translume_reference::transport::{Body, Solution, sites};
-use translume_tests::{Check, Fixture, Model, Pose, at_most, holds, light, notices, sphere_with};
+use translume_tests::{
+    Check, Fixture, Model, Pose, at_least, at_most, creature, gpu, holds, light, notices, rmse_by_area,
+    sphere_with,
+};
 
-/// Five mean free paths across a radius in red, none in blue to speak of.
-fn medium() -> Medium {
-    Medium { sigma_s_prime: [0.1, 0.5, 1.5], sigma_a: [0.0, 0.01, 0.1], ior: 1.0 }
+/// A radius of the sphere is 5, 25 and 80 mean free paths.
+const MEDIUM: Medium = Medium { sigma_s_prime: [0.1, 0.5, 1.5], sigma_a: [0.0, 0.01, 0.1], ior: 1.0 };
+/// A mean free path is a texel of the creature or more, and its ears are thin.
+const THIN: Medium = Medium { sigma_s_prime: [0.1, 0.2, 0.35], sigma_a: [0.0, 0.001, 0.02], ior: 1.0 };
+
+fn sun(to_light: [f32; 3]) -> Light {
+    Light::Directional(DirectionalLight { to_light, irradiance: [3.0; 3], ..Default::default() })
 }
 
-fn agrees(model: &Arc<Model>, medium: Medium, lights: &[Light], bound: f64) -> Check {
-    let mut fixture = Fixture::new(model, |d| {
-        (d.medium, d.transport, d.method) = (medium, Transport::Boundary, Method::default());
-    });
+fn fixture(model: &Arc<Model>, medium: Medium, transport: Transport) -> Fixture {
+    Fixture::new(model, |d| (d.medium, d.transport, d.method) = (medium, transport, Method::default()))
+}
+
+/// RMS difference by area, over the RMS of what is exact.
+fn apart(fixture: &Fixture, found: &[[f64; 3]], exact: &[[f64; 3]]) -> f64 {
+    let exact: Vec<Source> = fixture
+        .sources()
+        .into_iter()
+        .zip(exact)
+        .map(|(source, exact)| Source { irradiance: *exact, ..source })
+        .collect();
+    rmse_by_area(found, &exact)
+}
+
+/// The same body is solved by dense sums for `twin`.
+fn agrees(model: &Arc<Model>, twin: Medium, medium: Medium, bound: f64) -> Check {
+    let lights = [sun([0.3, 0.5, -0.8])];
+    let mut fixture = fixture(model, medium, Transport::Boundary);
     let pose = Pose::rest(model.mesh.targets.len());
-    fixture.run(&pose.frame(lights));
-    let exitance = fixture.exitance();
+    fixture.run(&pose.frame(&lights));
     let wide = |values: [f32; 3]| values.map(f64::from);
     let volume = Volume {
-        sigma_s: wide(medium.sigma_s_prime),
-        sigma_a: wide(medium.sigma_a),
+        sigma_s: wide(twin.sigma_s_prime),
+        sigma_a: wide(twin.sigma_a),
         g: 0.0,
-        ior: medium.ior.into(),
+        ior: twin.ior.into(),
     };
     let surface = fixture.twin_surface(&pose);
-    let shape = Closed::new(&surface).expect("a closed mesh");
+    let shape = Closed::new(&surface).map_err(|problem| format!("{problem}"))?;
     let twins: Vec<_> = lights.iter().map(|each| light(each, 1.0)).collect();
     let body = Body { shape: &shape, volume, lights: &twins };
-    let sources = fixture.sources();
-    let solution = Solution::new(body, sites(&model.atlas, &surface, &sources), 8);
-    eprintln!("residual {:?}", solution.residual());
-    let mut worst: f64 = 0.0;
-    for k in 0..3 {
-        let (mut square, mut sum, mut count, mut signed) = (0.0, 0.0, 0.0, 0.0);
-        for (i, source) in sources.iter().enumerate().filter(|(_, source)| source.area > 0.0) {
-            let exact = solution.exitance(i)[k];
-            square += source.area * (exitance[i][k] - exact).powi(2);
-            signed += source.area * (exitance[i][k] - exact);
-            sum += source.area * exact;
-            count += source.area;
-        }
-        let rms = (square / count).sqrt() / (sum / count);
-        eprintln!("channel {k}: rms {rms:.4} bias {:+.4} mean {:.4e}", signed / sum, sum / count);
-        worst = worst.max(rms);
-    }
-    at_most("boundary against dense sums", worst, bound)
+    let solution = Solution::new(body, sites(&model.atlas, &surface, &fixture.sources()), 6);
+    let exact: Vec<[f64; 3]> = (0..solution.fluence().len()).map(|k| solution.exitance(k)).collect();
+    let what = format!("{}: boundary against dense sums", model.mesh.name);
+    at_most(&what, apart(&fixture, &fixture.exitance(), &exact), bound)
 }
 
+/// Measured 2.1 % on the sphere, whose texels are up to nine mean free paths wide and the twin's discs of another form; and 4.3 % on the creature, whose
+/// thickness and chords come from rays through discs in place of triangles.
 #[test]
 fn exitance_is_that_of_dense_sums() {
+    holds(agrees(&sphere_with(48), MEDIUM, MEDIUM, 0.03));
+    holds(agrees(&creature(), THIN, THIN, 0.055));
+    let darker = Medium { sigma_a: [0.01, 0.02, 0.2], ..MEDIUM };
+    notices(agrees(&sphere_with(48), darker, MEDIUM, 0.03));
+}
+
+fn pose(frame: f32) -> (Pose, [Light; 1]) {
+    let mut pose = Pose::rest(1);
+    pose.warp.twist = (2.0 * frame).to_radians();
+    let (sin, cos) = (3.0 * frame).to_radians().sin_cos();
+    (pose, [sun([sin, 0.3, cos])])
+}
+
+/// How far a body that moved on for a few frames is from one that is solved from nothing.
+fn lags(warm_frames: [f32; 4], bound: f64) -> Check {
+    let model = creature();
+    let mut warm = fixture(&model, THIN, Transport::Boundary);
+    for frame in warm_frames {
+        let (pose, lights) = pose(frame);
+        warm.run(&pose.frame(&lights));
+    }
+    let mut cold = fixture(&model, THIN, Transport::Boundary);
+    let (pose, lights) = pose(3.0);
+    cold.run(&pose.frame(&lights));
+    at_most("lag of a turning light and a twist", apart(&cold, &warm.exitance(), &cold.exitance()), bound)
+}
+
+/// What the library promises; measured 1.0 %, and 2.5 % for a frame that is left out.
+#[test]
+fn a_frame_goes_on_from_the_last() {
+    holds(lags([0.0, 1.0, 2.0, 3.0], 0.02));
+    notices(lags([0.0, 1.0, 2.0, 2.0], 0.02));
+}
+
+/// Share of the light that is not explained after the first frame, the worst of the channels, and how often nothing was found.
+fn state(fixture: &Fixture) -> (f64, u32) {
+    let Some(buffer) = fixture.body.outputs().solver else { return (f64::NAN, u32::MAX) };
+    let words: Vec<u32> = readback::buffer(&gpu().device, &gpu().queue, buffer).unwrap_or_default();
+    let residual = words[24..27].iter().map(|word| f64::from(f32::from_bits(*word))).fold(0.0, f64::max);
+    (residual, words[31])
+}
+
+/// Eight tries, each of which takes a factor of 2 to 5 on bodies like these.
+#[test]
+fn the_first_frame_solves_the_equation() {
+    for (model, medium) in [(sphere_with(48), MEDIUM), (creature(), THIN)] {
+        let mut fixture = fixture(&model, medium, Transport::Boundary);
+        fixture.run(&Pose::rest(model.mesh.targets.len()).frame(&[sun([0.0, 0.3, -1.0])]));
+        let (residual, failures) = state(&fixture);
+        holds(at_most("what is left", residual, 0.01));
+        assert_eq!(failures, 0);
+    }
+    notices(at_most(
+        "what is left of nothing",
+        state(&fixture(&creature(), THIN, Transport::Classic)).0,
+        0.01,
+    ));
+}
+
+fn furnace(medium: Medium, bound: f64) -> Check {
+    let mut fixture = fixture(&sphere_with(64), medium, Transport::Boundary);
+    fixture.run(&Pose::rest(0).frame(&[Light::Ambient(AmbientLight::default())]));
+    let white = vec![[std::f64::consts::PI; 3]; fixture.exitance().len()];
+    at_most("furnace", apart(&fixture, &fixture.exitance(), &white), bound)
+}
+
+/// Light that goes through without scattering is missing: e^−10 along a diameter. The atlas: measured 1.6 %.
+#[test]
+fn a_white_body_vanishes_in_a_white_sky() {
+    let white = Medium { sigma_s_prime: [0.1, 0.2, 0.3], sigma_a: [0.0; 3], ior: 1.0 };
+    holds(furnace(white, 0.025));
+    notices(furnace(Medium { sigma_a: [0.002; 3], ..white }, 0.025));
+}
+
+/// Without an eye light leaves by the diffuse law.
+#[test]
+fn layers_are_seen_from_somewhere() {
     let model = sphere_with(48);
-    let sun = Light::Directional(DirectionalLight { irradiance: [3.0; 3], ..Default::default() });
-    holds(agrees(&model, medium(), &[sun], 0.02));
-    notices(agrees(&model, medium(), &[sun], 1e-6));
+    let pose = Pose::rest(0);
+    let lights = [sun([1.0, 0.2, 0.3])];
+    let mut plain = fixture(&model, MEDIUM, Transport::Boundary);
+    plain.run(&pose.frame(&lights));
+    let mut layers = fixture(&model, MEDIUM, Transport::BoundaryLayers);
+    layers.run(&pose.frame(&lights));
+    let same =
+        |layers: &Fixture| at_most("layers", apart(layers, &layers.exitance(), &plain.exitance()), 1e-6);
+    holds(same(&layers));
+    let eye = [0.0, 0.0, 300.0];
+    let camera = Camera::from(LookAt {
+        eye,
+        target: [0.0; 3],
+        up: [0.0, 1.0, 0.0],
+        horizontal_fov: 0.5,
+        aspect: 1.0,
+        near: 1.0,
+        far: 1000.0,
+    });
+    let mut frame = pose.frame(&lights);
+    frame.view = Some(View { camera, pixels: [64, 64] });
+    layers.run(&frame);
+    notices(same(&layers));
+    holds(at_least("what is seen", layers.exitance().iter().map(|b| b[0]).sum(), 1.0));
 }
 
 #[test]
-fn frames() {
-    let mesh = translume_mesh::builtin::creature_with(20000);
-    let model = Model::new(mesh, std::env::var("AT").map_or(192, |t| t.parse().unwrap()));
-    let medium = Medium { ior: 1.0, ..Medium::SKIMMILK };
-    let camera = translume::LookAt { eye: [60.0, 89.0, 250.0], target: [0.0, 49.0, 0.0], up: [0.0, 1.0, 0.0], horizontal_fov: 0.5, aspect: 1.0, near: 1.0, far: 1000.0 };
-    let frame = |k: f32| {
-        let mut pose = Pose::rest(1);
-        pose.weights = vec![0.0];
-        pose.warp.twist = k.to_radians();
-        let (sin, cos) = (0.05236 * k).sin_cos();
-        (pose, [Light::Directional(DirectionalLight { to_light: [sin, 0.3, cos], irradiance: [3.0; 3], ..Default::default() })])
-    };
-    for transport in Transport::ALL {
-        let body = || Fixture::new(&model, |d| (d.medium, d.transport, d.method, d.profile) = (medium, transport, Method::default(), translume::Profile::default()));
-        let mut warm = body();
-        let mut times = Vec::new();
-        for k in 0..6 {
-            let (pose, lights) = frame(k as f32);
-            let mut f = pose.frame(&lights);
-            let look = translume::Camera::from(camera);
-            f.view = Some(translume::View { camera: look, pixels: [512, 512] });
-            if transport != Transport::BoundaryLayers { f.view = None; }
-            let start = std::time::Instant::now();
-            warm.run(&f);
-            let exitance = warm.exitance();
-            times.push(start.elapsed().as_secs_f64());
-            if k == 5 || k == 1 {
-                let mut cold = body();
-                cold.run(&f);
-                let exact = cold.exitance();
-                let areas: Vec<f64> = warm.sources().iter().map(|s| s.area).collect();
-                for c in 0..3 {
-                    let (mut square, mut sum, mut count) = (0.0, 0.0, 0.0);
-                    for i in 0..areas.len() { square += areas[i] * (exitance[i][c] - exact[i][c]).powi(2); sum += areas[i] * exact[i][c]; count += areas[i]; }
-                    eprintln!("frame {k} {transport:?} lag {c}: {:.4}", (square / count).sqrt() / (sum / count));
-                }
-            }
-        }
-        eprintln!("{transport:?} {} texels: {times:.3?}", warm.body.texels());
-    }
+fn only_the_dual_scatter_at_texels_solves() {
+    let model = sphere_with(48);
+    let refused = Fixture::try_new(&model, |d| {
+        (d.transport, d.method) = (Transport::Boundary, Method::AllPairs);
+    });
+    assert!(matches!(refused.err(), Some(Error::Frame { .. })));
+    let mut fixture = fixture(&model, MEDIUM, Transport::Boundary);
+    assert!(fixture.body.set_method(Method::Pattern).is_err());
+    assert!(fixture.body.set_transport(Transport::Classic).is_ok());
+    assert!(fixture.body.set_method(Method::Pattern).is_ok());
+    assert!(fixture.body.set_transport(Transport::Boundary).is_err());
 }

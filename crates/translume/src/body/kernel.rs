@@ -1,7 +1,6 @@
 //! What the scatter of a body is made of: kernel table, uniforms, memory.
 
 use super::Body;
-use crate::{Error, Transport};
 use crate::evaluate::Evaluate;
 use crate::profile::{Profile, smooth_length};
 use crate::stages::cluster::Tree;
@@ -9,6 +8,7 @@ use crate::stages::scatter::dual::{self, Demand, DualMemory, ListSizes, Lists};
 use crate::stages::scatter::pattern::{Pattern, PatternMemory};
 use crate::stages::scatter::{Method, Scatter};
 use crate::stages::{Stage, StageSet};
+use crate::{Error, Transport};
 use std::sync::Arc;
 
 impl Body {

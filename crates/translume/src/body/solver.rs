@@ -95,12 +95,7 @@ impl Body {
     }
 
     /// Makes the solver ready for the frame, and finds out what it has to do.
-    pub(super) fn refresh_solver(
-        &mut self,
-        device: &wgpu::Device,
-        queue: &wgpu::Queue,
-        frame: &Frame<'_>,
-    ) {
+    pub(super) fn refresh_solver(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, frame: &Frame<'_>) {
         let Some(demand) = self.solver_demand() else {
             self.solver.forget();
             return;
@@ -120,7 +115,14 @@ impl Body {
         let memory = solver.memory.get_or_insert_with(|| {
             let stage = stages.transport.get_or_init(|| TransportStage::new(device));
             let lists = Arc::new(Lists::new(device, ListSizes::new(tree, demand, &self.limits)));
-            TransportMemory::new(device, stage, Inputs { buffers: &self.buffers, tree }, demand, lists, layout)
+            TransportMemory::new(
+                device,
+                stage,
+                Inputs { buffers: &self.buffers, tree },
+                demand,
+                lists,
+                layout,
+            )
         });
         if changed {
             memory.write(queue, layout, tree, demand.theta);

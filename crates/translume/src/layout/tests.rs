@@ -190,24 +190,14 @@ fn rust_and_wgsl_agree() {
     check!(POTENTIAL, "Strata", StrataLayout, [direction, cosine, ways]);
     let (_, expansion) = naga_layout(translume_shaders::POTENTIAL.source, "Expansion");
     assert_eq!(u64::from(expansion), crate::stages::scatter::dual::EXPANSION);
-    check!(
-        SITES,
-        "Node",
-        NodeLayout,
-        [centre, radius, middle, reach, scatter, texels, spread]
-    );
+    check!(SITES, "Node", NodeLayout, [centre, radius, middle, reach, scatter, texels, spread]);
     check!(
         PICTURE,
         "Parabola",
         ParabolaLayout,
         [surface, thickness, slope, cosine, curve, around, open, light]
     );
-    check!(
-        KRYLOV,
-        "State",
-        StateLayout,
-        [mean, weights, scale, residual, next, count, failed, failures]
-    );
+    check!(KRYLOV, "State", StateLayout, [mean, weights, scale, residual, next, count, failed, failures]);
     let (members, span) = naga_layout(translume_shaders::COMPOSITE.source, "Composite");
     assert_eq!(members[1], ("eye".to_owned(), offset_of!(CompositeLayout, eye) as u32));
     assert_eq!(members[3], ("exit_scale".to_owned(), offset_of!(CompositeLayout, exit_scale) as u32));

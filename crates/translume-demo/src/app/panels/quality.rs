@@ -5,13 +5,18 @@ use super::choice;
 use crate::scene::{Quality, THETA, TOLERANCE};
 use eframe::egui;
 use egui::Slider;
-use translume::{Evaluate, Profile};
+use translume::{Evaluate, Profile, Transport};
 
 const SIZES: [u32; 6] = [64, 128, 256, 512, 1024, 2048];
 
 pub fn show(app: &mut App, ui: &mut egui::Ui) {
     let mut scene = app.scene.clone();
     let quality = &mut scene.quality;
+    if choice(ui, "transport", &mut quality.transport, Transport::ALL.map(Transport::name))
+        && quality.transport != Transport::Classic.name()
+    {
+        (quality.method, quality.evaluate) = ("dual".to_owned(), "texel".to_owned());
+    }
     choice(ui, "profile", &mut quality.profile, Profile::NAMES.iter().map(|(name, _)| *name));
     method(ui, quality);
     number(ui, "texels across the atlas", &mut quality.atlas, &SIZES);
@@ -29,6 +34,7 @@ pub fn method(ui: &mut egui::Ui, quality: &mut Quality) {
     if choice(ui, "method", &mut quality.method, Quality::METHODS) {
         (quality.tolerance, quality.theta) = (None, None);
         if quality.method != "dual" {
+            Transport::Classic.name().clone_into(&mut quality.transport);
             quality.evaluate = "texel".to_owned();
         }
     }

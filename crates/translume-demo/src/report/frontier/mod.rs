@@ -8,7 +8,7 @@ mod page;
 mod plot;
 mod row;
 pub(super) mod scenes;
-mod shot;
+pub mod shot;
 pub(super) mod stage;
 mod summary;
 pub(super) mod truth;

@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 use std::time::Instant;
 use translume::{
     Body, BodyDescriptor, CompositeView, Evaluate, Frame, Gloss, Light, Lighting, Method, Profile,
-    ShadowOptions, Stage as Until, Translume, View, readback, wgpu,
+    ShadowOptions, Stage as Until, Translume, Transport, View, readback, wgpu,
 };
 use translume_rivals::{Geometry, Renderer};
 
@@ -119,6 +119,23 @@ impl<'a> Shot<'a> {
                 .transpose()?;
             let picture = readback::texture(&shot.gpu.device, &shot.gpu.queue, &shot.canvas.colour, 0)?;
             Ok(Taken { picture, frame_ms, scatter_ms, evaluations })
+        })
+    }
+
+    /// By another transport; the frame is that of a body that moved.
+    pub fn transport(&mut self, transport: Transport, atlas: u32, repeats: Repeats) -> Result<Taken, Error> {
+        self.repeats = repeats;
+        self.with_body(atlas, |shot, body, view| {
+            body.set_transport(transport)?;
+            // The first frame of all is another matter.
+            shot.prepare(body, false)?;
+            shot.frame(body, view)?;
+            let frame_ms = shot.median(|shot| {
+                shot.prepare(body, true)?;
+                shot.frame(body, view)
+            })?;
+            let picture = readback::texture(&shot.gpu.device, &shot.gpu.queue, &shot.canvas.colour, 0)?;
+            Ok(Taken { picture, frame_ms, scatter_ms: None, evaluations: None })
         })
     }
 

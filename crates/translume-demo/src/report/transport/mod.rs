@@ -1,19 +1,23 @@
-//! The dipole and what goes past it against paths, on the CPU: model errors alone, for the sums are dense.
+//! The dipole and what goes past it against paths: on the CPU, where sums are dense and errors are those of models alone, and on the GPU, with the time of a frame.
 
 mod blocks;
 
+use super::bench::Repeats;
 use super::frontier::scenes::{self, Source};
+use super::frontier::shot::Shot;
 use super::frontier::stage::Stage;
 use super::frontier::truth::{Patience, Truths};
 use super::{csv, date, prepare_folder, write};
 use crate::cli::Report;
 use crate::error::Error;
+use crate::gpu::Gpu;
 use crate::picture::{Output, Picture};
 use crate::progress;
 use crate::trace::Body as Subject;
 use blocks::{Figures, Truth};
 use indicatif::ProgressBar;
 use std::time::{Duration, Instant};
+use translume::{Config, Translume, Transport};
 use translume_mesh::Atlas;
 use translume_reference::composite::{Exit, look_up, render};
 use translume_reference::gather::{Gather, Source as Texel};
@@ -23,10 +27,19 @@ use translume_reference::{Surface, scatter};
 
 /// Width of the atlas: about five thousand sites.
 const ATLAS: u32 = 96;
+/// The same on the GPU, for a glance.
+const QUICK_ATLAS: u32 = 128;
 /// Applications of the sums, enough for a residual below a per cent on the scans that we know.
 const STEPS: usize = 6;
 /// Points along each side of a texel, and directions from each towards a light of some extent, squared.
 const LIGHT: [u32; 2] = [2, 4];
+
+/// The paper's is in the twin's first row.
+const GPU_MODELS: [(&str, Transport); 3] = [
+    ("GPU, classic", Transport::Classic),
+    ("GPU, boundary", Transport::Boundary),
+    ("GPU, layers", Transport::BoundaryLayers),
+];
 
 struct Row {
     scene: String,
@@ -41,13 +54,16 @@ pub fn run(arguments: &Report) -> Result<(), Error> {
     if sources.is_empty() {
         sources = scenes::own(arguments.quick);
     }
+    let gpu = Gpu::new()?;
+    let translume = Translume::new(&gpu.device, &Config::default())?;
     let bar = progress::bar("transport");
     bar.set_length(sources.len() as u64);
     let (mut rows, mut left_out) = (Vec::new(), Vec::new());
     for source in &sources {
-        scene(source, arguments, &bar, &mut rows, &mut left_out)?;
+        scene(source, arguments, (&gpu, &translume), &bar, &mut rows, &mut left_out)?;
         write(&arguments.output, "transport.csv", &csv(&rows))?;
-        write(&arguments.output, "transport.md", &markdown(&rows, &left_out))?;
+        let atlas = gpu_atlas(arguments);
+        write(&arguments.output, "transport.md", &markdown(&rows, &left_out, (&gpu.adapter, atlas)))?;
         bar.inc(1);
     }
     bar.finish_and_clear();
@@ -55,9 +71,14 @@ pub fn run(arguments: &Report) -> Result<(), Error> {
     Ok(())
 }
 
+fn gpu_atlas(arguments: &Report) -> u32 {
+    if arguments.quick { QUICK_ATLAS } else { arguments.atlas }
+}
+
 fn scene(
     source: &Source,
     arguments: &Report,
+    (gpu, translume): (&Gpu, &Translume),
     bar: &ProgressBar,
     rows: &mut Vec<Row>,
     left_out: &mut Vec<String>,
@@ -111,6 +132,13 @@ fn scene(
         let taken = picture(&stage.paths.camera, &surface, &atlas, &solution, tier);
         add(model, taken.radiance, start.elapsed().as_secs_f64());
     }
+    let mut shot = Shot::new(gpu, translume, &stage);
+    for (model, transport) in GPU_MODELS {
+        told(model);
+        let taken = shot.transport(transport, gpu_atlas(arguments), Repeats { warm_up: 1, timed: 3 })?;
+        let radiance = taken.picture.iter().map(|&[r, g, b, _]| [r, g, b]).collect();
+        add(model, radiance, taken.frame_ms / 1000.0);
+    }
     strip.extend(truths.shown(&traced.radiance));
     let file = arguments.output.join(format!("transport-{}.png", stage.name));
     Output::new(&file)?.write(&[side_by_side(&strip)])
@@ -148,17 +176,17 @@ fn csv(rows: &[Row]) -> String {
         let Figures { relative_rmse, bias } = row.figures;
         let figures =
             relative_rmse.iter().chain(&bias).map(|x| format!("{x:.5}")).collect::<Vec<_>>().join(",");
-        text += &format!("{},{},{figures},{:.1}\n", csv::quoted(&row.scene), row.model, row.seconds);
+        text += &format!("{},{},{figures},{:.3}\n", csv::quoted(&row.scene), row.model, row.seconds);
     }
     text
 }
 
-fn markdown(rows: &[Row], left_out: &[String]) -> String {
+fn markdown(rows: &[Row], left_out: &[String], (adapter, atlas): (&str, u32)) -> String {
     let command: Vec<_> = std::env::args().skip(1).collect();
     let mut text = format!(
-        "# Models against paths\n\n`translume {}`\n\n{}, CPU, double precision, atlas {ATLAS}², {STEPS} steps.\n\n\
+        "# Models against paths\n\n`translume {}`\n\n{}, CPU, double precision, atlas {ATLAS}², {STEPS} steps; GPU: {adapter}, atlas {atlas}², the frame of a body that moves.\n\n\
          RMS of the difference of means of 4 × 4 pixels over the mean of the truth, its noise taken off, and the mean of the difference over it; red, green, blue. \
-         Seconds of dense sums and rays: nothing here is fast.\n\n\
+         Seconds are of dense sums and rays on the CPU, where nothing is fast, and of a frame on the GPU.\n\n\
          | scene | model | error | bias, % | s |\n| --- | --- | --- | --- | ---: |\n",
         command.join(" "),
         date::today(),
@@ -168,7 +196,7 @@ fn markdown(rows: &[Row], left_out: &[String]) -> String {
         let (error, bias) = (row.figures.relative_rmse, row.figures.bias);
         let (error, bias) =
             (three(error, |x| format!("{x:.3}")), three(bias, |x| format!("{:+.1}", 100.0 * x)));
-        text += &format!("| {} | {} | {error} | {bias} | {:.0} |\n", row.scene, row.model, row.seconds);
+        text += &format!("| {} | {} | {error} | {bias} | {:.2} |\n", row.scene, row.model, row.seconds);
     }
     for scene in left_out {
         text += &format!("\nLeft out: {scene}\n");

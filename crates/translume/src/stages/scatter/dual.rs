@@ -205,15 +205,7 @@ impl Dual {
         };
         let points = self.points.memory(device, buffers, &field, demand.evaluate);
         let evaluate = demand.evaluate;
-        DualMemory {
-            uniforms,
-            lists,
-            group,
-            plan,
-            evaluate,
-            kind: MediumKind::default(),
-            points,
-        }
+        DualMemory { uniforms, lists, group, plan, evaluate, kind: MediumKind::default(), points }
     }
 
     /// Makes the pipelines of a body, so that no frame has to.

@@ -4,11 +4,11 @@ use super::TransportStage;
 use crate::Error;
 use crate::buffers::Buffers;
 use crate::gpu::{self, UNIFORM_STRIDE};
+use crate::kernel_table::KernelTableLayout;
 use crate::layout::{
     ChargeLayout, DualLayout, LevelLayout, NodeLayout, ParabolaLayout, ScatterLayout, ShapeLayout,
     StateLayout, StrataLayout, TermLayout, TransportLayout,
 };
-use crate::kernel_table::KernelTableLayout;
 use crate::stages::cluster::Tree;
 use crate::stages::scatter::dual::{Demand, Lists, Plan};
 use std::sync::Arc;

@@ -97,19 +97,13 @@ impl TransportStage {
         };
         let layouts = Layouts {
             sites: layout("sites", &[UNIFORM_ARRAY, READ, READ, WRITE, WRITE, WRITE]),
-            source: layout(
-                "source",
-                &[UNIFORM, UNIFORM, READ, READ, READ, READ, READ, WRITE, WRITE, WRITE],
-            ),
+            source: layout("source", &[UNIFORM, UNIFORM, READ, READ, READ, READ, READ, WRITE, WRITE, WRITE]),
             merge: layout("merge", &[UNIFORM_ARRAY, UNIFORM, READ, WRITE, WRITE]),
             potential: layout(
                 "potential",
                 &[UNIFORM_ARRAY, READ, READ, WRITE, WRITE, WRITE, WRITE, UNIFORM, READ, READ],
             ),
-            returning: layout(
-                "returning",
-                &[UNIFORM_ARRAY, UNIFORM, READ, READ, READ, READ, WRITE, WRITE],
-            ),
+            returning: layout("returning", &[UNIFORM_ARRAY, UNIFORM, READ, READ, READ, READ, WRITE, WRITE]),
             krylov: layout("krylov", &[UNIFORM, READ, READ, READ, WRITE, WRITE, WRITE, WRITE]),
             layer: layout("layer", &[UNIFORM, READ, READ, READ, READ, READ, READ, WRITE, WRITE]),
             picture: layout("picture", &[UNIFORM, UNIFORM, READ, READ, READ, READ, READ, WRITE]),
