@@ -25,8 +25,10 @@ struct Level {
 
 // Texels whose rays are taken together.
 const GROUP: u32 = 16u;
-// Opening angle, squared.
-const THETA_SQUARED: f32 = 0.8;
+// Opening angle, squared, and that of groups that do not face one way, which is those whose mean normal, squared, is shorter.
+const THETA_SQUARED: f32 = 0.25;
+const THETA_SQUARED_MIXED: f32 = 0.04;
+const ONE_WAY: f32 = 0.8;
 fn returning_place(texel: u32) -> u32 {
     return transport.source_count + texel;
 }
@@ -114,7 +116,9 @@ fn returning(index: u32, normal: vec3f) -> vec3f {
         let square = dot(offset, offset);
         // Nothing of it is above the horizon.
         let below = dot(offset, normal) < -place.w;
-        if at_level > 0u && place.w * place.w > THETA_SQUARED * square && !below {
+        let facing = shapes[source].normal;
+        let theta = select(THETA_SQUARED, THETA_SQUARED_MIXED, dot(facing, facing) < ONE_WAY);
+        if at_level > 0u && place.w * place.w > theta * square && !below {
             at_level -= 1u;
             node *= 4u;
             continue;
