@@ -97,6 +97,21 @@ fn a_frame_goes_on_from_the_last() {
     notices(lags([0.0, 1.0, 2.0, 2.0], 0.02));
 }
 
+/// A host may look at the irradiance before it goes on.
+#[test]
+fn a_frame_may_be_recorded_in_parts() {
+    let model = sphere_with(48);
+    let (pose, lights) = (Pose::rest(0), [sun([1.0, 0.2, 0.3])]);
+    let mut whole = fixture(&model, MEDIUM, Transport::Boundary);
+    whole.run(&pose.frame(&lights));
+    let mut parts = fixture(&model, MEDIUM, Transport::Boundary);
+    parts.light(&pose.frame(&lights));
+    let same = |parts: &Fixture| at_most("parts", apart(parts, &parts.exitance(), &whole.exitance()), 1e-5);
+    notices(same(&parts));
+    parts.encode();
+    holds(same(&parts));
+}
+
 /// Share of the light that is not explained after the first frame, the worst of the channels, and how often nothing was found.
 fn state(fixture: &Fixture) -> (f64, u32) {
     let Some(buffer) = fixture.body.outputs().solver else { return (f64::NAN, u32::MAX) };

@@ -131,7 +131,8 @@ impl Body {
                 &self.tree,
             );
         }
-        if let Some(solver) = self.solver.take().filter(|_| pending.contains(Stage::Scatter)) {
+        let solver = if pending.contains(Stage::Scatter) { self.solver.take() } else { None };
+        if let Some(solver) = solver {
             solver.encode(encoder, stages, &self.tree, &mut recording);
         } else if pending.contains(Stage::Scatter) {
             let mut pass = Pass::begin(encoder, Stage::Scatter, &mut recording);

@@ -106,7 +106,6 @@ impl Body {
         let solver = &mut self.solver;
         solver.memory = solver.memory.take().filter(|memory| memory.serves(demand, tree, &self.limits));
         let mut changed = self.pending.contains(Stage::Scatter);
-        let moved = self.pending.contains(Stage::Deform);
         if solver.memory.is_none() {
             solver.is_first = true;
             changed = true;
@@ -137,7 +136,7 @@ impl Body {
         let solves = is_new || solver.unsettled > 0;
         solver.unsettled = if is_new { SETTLING } else { solver.unsettled.saturating_sub(1) };
         solver.steps = Steps {
-            moved: moved && !solver.is_first,
+            warm: !solver.is_first,
             tries: if solves { TransportStage::tries(solver.is_first) } else { solver.steps.tries },
             seen,
         };

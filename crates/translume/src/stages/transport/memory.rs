@@ -40,6 +40,8 @@ pub(crate) struct TransportMemory {
     pub layer: wgpu::BindGroup,
     pub picture: wgpu::BindGroup,
     layout: TransportLayout,
+    /// Of the uniforms as they are; none before they were written.
+    theta: Option<f32>,
 }
 
 /// What of the body it reads.
@@ -200,6 +202,7 @@ impl TransportMemory {
             plan,
             groups,
             layout,
+            theta: None,
         }
     }
 
@@ -226,8 +229,11 @@ impl TransportMemory {
 
     /// Takes over the medium, and how small clusters have to look.
     pub fn write(&mut self, queue: &wgpu::Queue, layout: TransportLayout, tree: &Tree, theta: f32) {
-        let eye = self.layout.eye;
-        self.layout = TransportLayout { eye, ..layout };
+        let layout = TransportLayout { eye: self.layout.eye, ..layout };
+        if self.theta == Some(theta) && layout == self.layout {
+            return;
+        }
+        (self.layout, self.theta) = (layout, Some(theta));
         queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&self.layout));
         let scatter = ScatterLayout {
             table: KernelTableLayout::default(),

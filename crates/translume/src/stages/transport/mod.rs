@@ -82,8 +82,8 @@ struct Layouts {
 /// What of the light's way a frame does anew.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Steps {
-    /// Whether what was found before is no solution of this shape.
-    pub moved: bool,
+    /// Whether something was found before, though for another shape or light.
+    pub warm: bool,
     /// Tries; none where nothing but the eye moved.
     pub tries: u32,
     /// Whether light is gathered towards an eye.
@@ -176,7 +176,7 @@ impl TransportStage {
             frame.groups(pass, &krylov.measure);
             frame.one(pass, &krylov.settle_mean);
             frame.each(pass, &krylov.start, &memory.krylov);
-            if steps.moved {
+            if steps.warm {
                 frame.apply(pass);
                 frame.each(pass, &krylov.adopt, &memory.krylov);
             }
