@@ -31,7 +31,8 @@ pub struct Frame<'a> {
     /// What else casts shadows on the body: the host draws it, see [`Body::encode_with`](crate::Body::encode_with).
     pub casters: Option<Casters>,
     /// The only picture of the body in this frame, if there is but one. What it cannot show is then not scattered, and the exitance there is 0;
-    /// a camera that moves makes clusters and scatter run again. `None` serves any number of pictures.
+    /// a camera that moves makes clusters and scatter run again. `None` serves any number of pictures. From here
+    /// [`Transport::BoundaryLayers`](crate::Transport::BoundaryLayers) is seen.
     pub view: Option<View>,
 }
 
