@@ -15,6 +15,10 @@ use std::sync::Arc;
 /// Frames after the last change that still solve.
 const SETTLING: u32 = 3;
 
+/// A tolerance is one of the mean, and a body lit from behind is a hundred times darker than that where it is seen: at the opening angle that serves
+/// exitance squares of the tree show on the bunny, at .77 of it in places, at .6 nowhere.
+const NARROWING: f32 = 0.6;
+
 pub(super) struct Solver {
     pub transport: Transport,
     memory: Option<TransportMemory>,
@@ -82,6 +86,7 @@ impl Recorded<'_> {
 impl Body {
     fn solver_demand(&self) -> Option<Demand> {
         let Method::Dual { theta } = self.method.resolved() else { return None };
+        let theta = if matches!(self.method, Method::Within { .. }) { NARROWING * theta } else { theta };
         let is_solved = self.solver.transport != Transport::Classic;
         is_solved.then_some(Demand { list_entries: self.list_entries, theta, evaluate: Evaluate::PerTexel })
     }
