@@ -1,20 +1,5 @@
 // Cluster: the texels summed up their tree, four to one. Level 0 is the texels themselves.
 
-struct Level {
-    // Number of nodes below, and of nodes of this level.
-    child_count: u32,
-    node_count: u32,
-    // Where the children and the nodes of this level begin in `clusters`.
-    child_offset: u32,
-    node_offset: u32,
-    // Where the sources of this level, and its receivers, begin in `bounds`.
-    source_offset: u32,
-    receiver_offset: u32,
-    // Where the sources of the level below begin in `bounds`.
-    child_sources: u32,
-    padding: u32,
-}
-
 // Which texels are needed as receivers.
 struct Need {
     // Millimetres to clip space.

@@ -175,7 +175,7 @@ fn leaf(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: ve
             if w.done { continue; }
             let at = source_index(w.level, w.node);
             let seen = bounds[at];
-            if w.level > 0u && seen.w * seen.w > scatter.leaf_theta_squared * (distance_square(at, place) + near) {
+            if w.level > 0u && too_large_for_a_texel(seen.w, distance_square(at, place) + near) {
                 open(&w);
                 continue;
             }

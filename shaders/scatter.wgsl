@@ -70,11 +70,9 @@ fn tree(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: ve
                 continue;
             }
             found = seen.w > 0.0;
-            node += 1u;
-            while level < scatter.top_level && (node % 4u == 0u || node >= level_count(scatter.texel_count, level)) {
-                node = (node + 3u) / 4u;
-                level += 1u;
-            }
+            let next = passed(scatter.texel_count, scatter.top_level, Step(level, node));
+            level = next.level;
+            node = next.node;
         }
         if !found { break; }
         sum += sent(source, index, receiver, normal).rgb;

@@ -107,3 +107,19 @@ fn disc_spread(area: f32) -> f32 {
 fn level_count(texel_count: u32, level: u32) -> u32 {
     return ((texel_count - 1u) >> (2u * level)) + 1u;
 }
+
+// A node of a level.
+struct Step {
+    level: u32,
+    node: u32,
+}
+
+// From a node that is done with all below it to the next in a walk down from the top level, which ends there.
+fn passed(texel_count: u32, top_level: u32, at: Step) -> Step {
+    var next = Step(at.level, at.node + 1u);
+    while next.level < top_level && (next.node % 4u == 0u || next.node >= level_count(texel_count, next.level)) {
+        next.node = (next.node + 3u) / 4u;
+        next.level += 1u;
+    }
+    return next;
+}

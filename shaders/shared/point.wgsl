@@ -42,7 +42,8 @@ fn exitance_at(receiver: vec3f, texel: u32) -> vec4f {
             if w.done { continue; }
             let at = source_index(w.level, w.node);
             let source = bounds[at];
-            if w.level > 0u && too_large_for_a_texel(source.w, receiver - source.xyz) {
+            let offset = receiver - source.xyz;
+            if w.level > 0u && too_large_for_a_texel(source.w, dot(offset, offset) + scatter.z_r_squared) {
                 open(&w);
                 continue;
             }

@@ -46,11 +46,9 @@ fn crossing(origin: vec3f, direction: vec3f, begin: f32, most: f32, side: f32, a
                 if t > begin && t < best.t && dot(beside, beside) < max(0.5 * place.w, transport.reach_squared) { best = Crossing(t, node); }
             }
         }
-        node += 1u;
-        while level < transport.top_level && (node % 4u == 0u || node >= level_count(transport.texel_count, level)) {
-            node = (node + 3u) / 4u;
-            level += 1u;
-        }
+        let next = passed(transport.texel_count, transport.top_level, Step(level, node));
+        level = next.level;
+        node = next.node;
         if level == transport.top_level || (any_will_do && best.site != NO_SITE) { break; }
     }
     if best.site == NO_SITE { best.t = FAR; }

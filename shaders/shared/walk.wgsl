@@ -84,7 +84,7 @@ fn receiver_index(level: u32, node: u32) -> u32 {
     return scatter.offsets[level / 4u][level % 4u] + node;
 }
 
-// Whether a single texel has to open a source of this size.
-fn too_large_for_a_texel(size: f32, offset: vec3f) -> bool {
-    return size * size > scatter.leaf_theta_squared * (dot(offset, offset) + scatter.z_r_squared);
+// Whether a single texel has to open a source of this size whose distance, squared, with that below which sums are smooth, is `sight`.
+fn too_large_for_a_texel(size: f32, sight: f32) -> bool {
+    return size * size > scatter.leaf_theta_squared * sight;
 }

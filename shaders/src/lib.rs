@@ -100,7 +100,8 @@ pub const GATHER: Shader = shader!(
     "gather.wgsl"
 );
 /// Texels → their tree of clusters.
-pub const CLUSTER: Shader = shader!("cluster", "shared/dispatch.wgsl", "shared/cluster.wgsl", "cluster.wgsl");
+pub const CLUSTER: Shader =
+    shader!("cluster", "shared/dispatch.wgsl", "shared/cluster.wgsl", "shared/level.wgsl", "cluster.wgsl");
 /// Irradiance → radiant exitance.
 pub const SCATTER: Shader = scatter!("scatter", "kernel/chord.wgsl", "scatter.wgsl");
 /// The same with sources off the surface, whose flux leaves.
@@ -130,6 +131,7 @@ pub const SITES: Shader = shader!(
     "shared/cluster.wgsl",
     "shared/shape.wgsl",
     "shared/node.wgsl",
+    "shared/level.wgsl",
     "transport/sites.wgsl"
 );
 /// Light that entered → where it scatters first.
@@ -143,7 +145,8 @@ pub const SOURCE: Shader = transport!(
     "transport/source.wgsl"
 );
 /// What texels send, summed up their tree.
-pub const MERGE: Shader = transport!("merge", "shared/shape.wgsl", "transport/merge.wgsl");
+pub const MERGE: Shader =
+    transport!("merge", "shared/shape.wgsl", "shared/level.wgsl", "transport/merge.wgsl");
 /// Both → fluence, with groups of texels at both ends.
 pub const POTENTIAL: Shader = transport!(
     "potential",
@@ -156,7 +159,8 @@ pub const POTENTIAL: Shader = transport!(
     "dual.wgsl"
 );
 /// What leaves a concave body → what comes in again.
-pub const RETURNING: Shader = transport!("returning", "shared/shape.wgsl", "transport/returning.wgsl");
+pub const RETURNING: Shader =
+    transport!("returning", "shared/shape.wgsl", "shared/level.wgsl", "transport/returning.wgsl");
 /// The boundary equation's next try.
 pub const KRYLOV: Shader = transport!("krylov", "shared/shape.wgsl", "transport/krylov.wgsl");
 /// Fluence → radiant exitance.

@@ -1,16 +1,5 @@
 // Merge: what texels send, summed up their tree, four to one.
 
-struct Level {
-    child_count: u32,
-    node_count: u32,
-    child_offset: u32,
-    node_offset: u32,
-    source_offset: u32,
-    receiver_offset: u32,
-    child_sources: u32,
-    padding: u32,
-}
-
 @group(0) @binding(0) var<uniform> level: Level;
 @group(0) @binding(1) var<uniform> transport: Transport;
 @group(0) @binding(2) var<storage, read> bounds: array<vec4f>;

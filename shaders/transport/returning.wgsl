@@ -1,16 +1,5 @@
 // Returning: light that leaves a concave body and enters it again, Γ, and what the surface then sends.
 
-struct Level {
-    child_count: u32,
-    node_count: u32,
-    child_offset: u32,
-    node_offset: u32,
-    source_offset: u32,
-    receiver_offset: u32,
-    child_sources: u32,
-    padding: u32,
-}
-
 @group(0) @binding(0) var<uniform> level: Level;
 @group(0) @binding(1) var<uniform> transport: Transport;
 @group(0) @binding(2) var<storage, read> bounds: array<vec4f>;
@@ -124,18 +113,16 @@ fn returning(index: u32, normal: vec3f) -> vec3f {
             continue;
         }
         let receives = dot(normal, offset);
-        let gives = -dot(shapes[source].normal, offset);
+        let gives = -dot(facing, offset);
         if receives > 0.0 && gives > 0.0 && !below {
             let area = shapes[source].area;
             let form = 0.31830988 * receives * gives / (square * max(square, 0.25 * area));
             seen += form * area;
             sum += form * leaving[source].rgb;
         }
-        node += 1u;
-        while at_level < transport.top_level && (node % 4u == 0u || node >= level_count(transport.texel_count, at_level)) {
-            node = (node + 3u) / 4u;
-            at_level += 1u;
-        }
+        let next = passed(transport.texel_count, transport.top_level, Step(at_level, node));
+        at_level = next.level;
+        node = next.node;
         if at_level == transport.top_level { break; }
     }
     return sum * select(0.0, min(hidden / seen, 1.0), seen > 0.0);

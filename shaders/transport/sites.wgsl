@@ -1,20 +1,5 @@
 // Sites: the texels as discs, summed up their tree, four to one, by area: middles, extents, and bounds for rays.
 
-struct Level {
-    // Number of nodes below, and of nodes of this level.
-    child_count: u32,
-    node_count: u32,
-    // Where the children and the nodes of this level begin among the nodes above the texels.
-    child_offset: u32,
-    node_offset: u32,
-    // Where the sources of this level, and its receivers, begin in `bounds`.
-    source_offset: u32,
-    receiver_offset: u32,
-    // Where the sources of the level below begin in `bounds`.
-    child_sources: u32,
-    padding: u32,
-}
-
 @group(0) @binding(0) var<uniform> level: Level;
 @group(0) @binding(1) var<storage, read> texel_positions: array<vec4f>;
 @group(0) @binding(2) var<storage, read> texel_normals: array<vec4f>;

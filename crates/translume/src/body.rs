@@ -15,7 +15,7 @@ use crate::buffers::{Buffers, Extent};
 use crate::descriptor::BodyDescriptor;
 use crate::evaluate::{Evaluate, Shape};
 use crate::frame::{self, Casters, Frame, Lighting};
-use crate::gpu::MediumKind;
+use crate::gpu::{self, MediumKind};
 use crate::host_vertices::HostNumbers;
 use crate::kernel_table::KernelTableLayout;
 use crate::kernel_texture::KernelTexture;
@@ -361,7 +361,7 @@ impl Body {
     /// Whether the device can remember what every texel sees of the sky.
     fn check_sky(&self) -> Result<(), Error> {
         let required = SkyMemory::size(&self.shadows, self.extent.texels);
-        let actual = self.limits.max_storage_buffer_binding_size.min(self.limits.max_buffer_size);
+        let actual = gpu::binding_limit(&self.limits);
         if required <= actual {
             return Ok(());
         }

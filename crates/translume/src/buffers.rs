@@ -82,7 +82,7 @@ impl Extent {
     /// Whether the device can hold it.
     pub fn check(&self, limits: &wgpu::Limits) -> Result<(), Error> {
         let texture = u64::from(limits.max_texture_dimension_2d);
-        let binding = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
+        let binding = gpu::binding_limit(limits);
         let tree = Tree::new(self.texels);
         let clusters = u64::from(tree.clusters()) * size_of::<Cluster>() as u64;
         let lamps = u64::from(tree.sources()) * size_of::<LampLayout>() as u64;

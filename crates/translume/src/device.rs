@@ -40,7 +40,7 @@ pub(crate) fn check(limits: &Limits) -> Result<(), Error> {
 /// [`Translume::create_body`](crate::Translume::create_body) has the last word.
 #[must_use]
 pub fn largest_atlas(limits: &Limits) -> u32 {
-    let pixels = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size) / 4;
+    let pixels = crate::gpu::binding_limit(limits) / 4;
     limits.max_texture_dimension_2d.min(pixels.isqrt() as u32)
 }
 

@@ -40,6 +40,11 @@ pub(crate) const DEPTH_MAPS: BindingType = BindingType::Texture {
 /// Uniforms picked by dynamic offset stand this far apart (WebGPU's default alignment).
 pub(crate) const UNIFORM_STRIDE: u64 = 256;
 
+/// Bytes that one storage binding holds.
+pub(crate) fn binding_limit(limits: &wgpu::Limits) -> u64 {
+    limits.max_storage_buffer_binding_size.min(limits.max_buffer_size)
+}
+
 /// Bindings 0, 1, 2 … of group 0.
 pub(crate) fn layout(
     device: &wgpu::Device,

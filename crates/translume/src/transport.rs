@@ -77,13 +77,6 @@ pub(crate) fn layout(medium: &Medium, tree: &Tree, groups: u32, texel: f32) -> T
     let row = |k: usize, geometry: f32| {
         [channels[0][k] as f32, channels[1][k] as f32, channels[2][k] as f32, geometry]
     };
-    let levels = |list: &[u32]| {
-        let mut packed = [[0; 4]; 4];
-        for (level, offset) in list.iter().enumerate() {
-            packed[level / 4][level % 4] = *offset;
-        }
-        packed
-    };
     let boost = channels.map(|[_, albedo, ..]| (1.0 + shortfall(albedo)) as f32);
     TransportLayout {
         extinction: row(0, 0.0),
@@ -102,8 +95,8 @@ pub(crate) fn layout(medium: &Medium, tree: &Tree, groups: u32, texel: f32) -> T
         padding: [0; 2],
         eye: [0.0; 3],
         padding_2: 0,
-        offsets: levels(&tree.offsets),
-        sources: levels(&tree.source_offsets),
+        offsets: Tree::packed(&tree.offsets),
+        sources: Tree::packed(&tree.source_offsets),
     }
 }
 

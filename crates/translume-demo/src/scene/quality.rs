@@ -83,7 +83,7 @@ impl Quality {
     pub fn transport(&self) -> Result<Transport, Error> {
         let fail = |problem| Err(Error::Option { option: "--transport", problem });
         let name = self.transport.as_str();
-        let Some(transport) = Transport::ALL.into_iter().find(|transport| transport.name() == name) else {
+        let Ok(transport) = name.parse::<Transport>() else {
             let known = Transport::ALL.map(Transport::name).join(", ");
             return fail(format!("\"{name}\" is no transport; known are {known}"));
         };

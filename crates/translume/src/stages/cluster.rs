@@ -53,6 +53,15 @@ impl Tree {
         self.source_offsets.last().map_or(0, |last| last + 1)
     }
 
+    /// One number a level, as shaders read them.
+    pub fn packed(levels: &[u32]) -> [[u32; 4]; 4] {
+        let mut packed = [[0; 4]; 4];
+        for (level, number) in levels.iter().enumerate() {
+            packed[level / 4][level % 4] = *number;
+        }
+        packed
+    }
+
     pub fn top_level(&self) -> u32 {
         self.counts.len() as u32 - 1
     }

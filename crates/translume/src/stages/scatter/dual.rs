@@ -129,7 +129,7 @@ fn capacity(texels: u32, demand: Demand, limits: &wgpu::Limits) -> u32 {
 }
 
 fn binding(limits: &wgpu::Limits) -> u64 {
-    limits.max_storage_buffer_binding_size.min(limits.max_buffer_size).min(1 << 30)
+    gpu::binding_limit(limits).min(1 << 30)
 }
 
 /// The first receiver whose expansion is kept: on the second level, for those of the first go straight to the texels; or on the first,
@@ -278,10 +278,7 @@ impl Plan {
     /// One uniform per level of receivers, ready for dynamic offsets.
     pub fn uniforms(&self, scatter: &ScatterLayout, tree: &Tree, theta: f32) -> Vec<u8> {
         let stride = UNIFORM_STRIDE as usize;
-        let mut offsets = [[0; 4]; 4];
-        for (level, offset) in tree.offsets.iter().enumerate() {
-            offsets[level / 4][level % 4] = *offset;
-        }
+        let offsets = Tree::packed(&tree.offsets);
         let mut bytes = vec![0; stride * (self.start_level as usize + 1)];
         for (level, slot) in (0..).zip(bytes.chunks_mut(stride)) {
             let uniform = DualLayout {

@@ -152,10 +152,6 @@ impl Scatter {
             Method::Tree { theta } | Method::Dual { theta } => theta,
             _ => 0.0,
         };
-        let mut sources = [[0; 4]; 4];
-        for (level, offset) in tree.source_offsets.iter().enumerate() {
-            sources[level / 4][level % 4] = *offset;
-        }
         ScatterLayout {
             table,
             texel_count: tree.counts[0],
@@ -165,7 +161,7 @@ impl Scatter {
             theta_squared: theta * theta,
             z_r_squared: smooth_length * smooth_length,
             padding: [0; 2],
-            sources,
+            sources: Tree::packed(&tree.source_offsets),
             terms,
         }
     }

@@ -312,8 +312,7 @@ pub(crate) fn bytes(tree: &Tree) -> u64 {
 /// Whether a binding holds the largest of it.
 pub(crate) fn check(tree: &Tree, limits: &wgpu::Limits) -> Result<(), Error> {
     let Sizes { charges, directions, .. } = Sizes::new(tree);
-    let (required, actual) =
-        (charges.max(directions), limits.max_storage_buffer_binding_size.min(limits.max_buffer_size));
+    let (required, actual) = (charges.max(directions), gpu::binding_limit(limits));
     if required <= actual {
         return Ok(());
     }
