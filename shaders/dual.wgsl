@@ -93,9 +93,9 @@ fn inner(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: v
             if w.done { turn_over(&w); }
             if w.done { continue; }
             let index = source_index(w.level, w.node);
-            let seen = bounds[index];
+            let seen = source_bounds(index);
             let extent = seen.w * seen.w + RECEIVER_WEIGHT * RECEIVER_WEIGHT * size * size;
-            let sight = distance_square(index, place) + near;
+            let sight = distance_square(index, seen, place) + near;
             let small = extent < scatter.theta_squared * sight;
             let limit = select(SOURCE_EXCESS * SOURCE_EXCESS * size * size, scatter.leaf_theta_squared * sight, decides);
             if seen.w * seen.w > limit && w.level > 0u && !small {
@@ -174,8 +174,8 @@ fn leaf(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: ve
             if w.done { turn_over(&w); }
             if w.done { continue; }
             let at = source_index(w.level, w.node);
-            let seen = bounds[at];
-            if w.level > 0u && too_large_for_a_texel(seen.w, distance_square(at, place) + near) {
+            let seen = source_bounds(at);
+            if w.level > 0u && too_large_for_a_texel(seen.w, distance_square(at, seen, place) + near) {
                 open(&w);
                 continue;
             }

@@ -1,12 +1,10 @@
 // The kernels of the boundary equation: fluence G of point sources in the volume, and its derivative at sources along their first moment.
-// The dual sum (`dual.wgsl`) adds up, channel by channel,
-//   LIGHT            what entered, and in w how much of all directions is body: φ_Q, c
-//   SURFACE          what the surface sends, Σ A [(c_G φ − 4 c_G Γ) G + φ H]
-//   LIGHT, BELOW     φ under the surface: the first less the second, over c
+// The dual sum (`dual.wgsl`) adds up, channel by channel, at sites or under them,
+//   light            φ_Q, of what entered
+//   the surface      Σ A [(c_G φ − 4 c_G Γ) G + φ H], and in w how much of all directions is body: c
 
 override LIGHT: bool = true;
-override SURFACE: bool = false;
-// Whether receivers lie under the texels, in each channel as deep as `layer_depth` says, and in w at the mean of that.
+// Whether receivers lie under the sites, in each channel as deep as `layer_depth` says, and in w at the mean of that.
 override BELOW: bool = false;
 
 @group(0) @binding(2) var<storage, read> charges: array<Charge>;
@@ -133,8 +131,8 @@ fn spread_out(jet: Jet, o: Places, shape: Shape, line: Line) -> More {
 fn turned(c: Charge, jet: Jet, o: Places, shape: Shape) -> vec4f {
     let n = shape.normal;
     let square = dot(n, n);
-    // Flux through the area, were it flat. Where normals cancel nobody knows it.
-    if square < LEAST_NORMAL { return vec4f(0.0); }
+    // Flux through the area, were it flat. Where normals cancel nobody knows it; light has none.
+    if LIGHT || square < LEAST_NORMAL { return vec4f(0.0); }
     let whole = (c.x * n.x + c.y * n.y + c.z * n.z) / square;
     let turns = unpacked_moments(shape.turns);
     let trace = turns.diagonal.x + turns.diagonal.y + turns.diagonal.z;
@@ -176,16 +174,24 @@ fn texel_place(texel: u32, position: vec3f) -> Place {
     return beyond(together(position), -shapes[texel].normal, below(texel));
 }
 
+// Sources of light are where those of the surface are, but nothing where it is dark.
+fn source_bounds(source: u32) -> vec4f {
+    return bounds[select(0u, transport.light_bounds, LIGHT) + source];
+}
+
+fn source_charge(source: u32) -> Charge {
+    return charges[select(transport.source_count, 0u, LIGHT) + source];
+}
+
 // From what a source sends to receivers, squared, mm²: of light that entered from where it may scatter first, in the nearest of the channels.
-fn distance_square(source: u32, place: Place) -> f32 {
-    let o = minus(place, together(bounds[source].xyz));
-    if !LIGHT || is_dark(charges[source].power) {
-        let r2 = square(o);
-        return min(r2.x, min(r2.y, r2.z));
+fn distance_square(source: u32, seen: vec4f, place: Place) -> f32 {
+    let o = minus(place, together(seen.xyz));
+    var r2 = square(o);
+    if LIGHT && seen.w > 0.0 {
+        let u = strata[source].direction;
+        let along = (o.x * u.x + o.y * u.y + o.z * u.z) / max(dot(u, u), 1e-12);
+        r2 = square(beyond(o, -u, clamp(along, vec4f(0.0), ways(strata[source], 2u))));
     }
-    let u = strata[source].direction;
-    let along = (o.x * u.x + o.y * u.y + o.z * u.z) / max(dot(u, u), 1e-12);
-    let r2 = square(beyond(o, -u, clamp(along, vec4f(0.0), ways(strata[source], 2u))));
     return min(r2.x, min(r2.y, r2.z));
 }
 
@@ -198,60 +204,50 @@ fn moved_to(e: Expansion, before: Place, place: Place) -> Expansion {
     return moved_apart(e, minus(place, before));
 }
 
-// What a source sends, one point after the other: light that entered as one or in three strata, then what the surface sends. A loop, for software
-// adapters run through every branch.
+// What a source sends, one part after the other: light in three strata, or in one where they are hardly apart, and what the surface sends. A loop, for
+// software adapters run through every branch.
 struct Parts {
     charge: Charge,
-    strata: Strata,
+    direction: vec3f,
     mean: Mean,
-    // Of light, and of all.
-    of_light: u32,
     count: u32,
-}
-
-struct Part {
-    charge: Charge,
-    ways: vec4f,
-    square: vec4f,
 }
 
 fn parts(source: u32, d: Places) -> Parts {
     var p: Parts;
+    p.charge = source_charge(source);
+    p.count = 1u;
     if LIGHT {
-        p.charge = charges[source];
-        p.strata = strata[source];
-        p.mean = all_strata(p.strata);
+        p.direction = strata[source].direction;
+        p.mean = all_strata(strata[source]);
         let r2 = square(d);
-        let reach = deepest(p.strata);
-        let is_one = is_dark(p.charge.power) || reach * reach < SHALLOW * SHALLOW * min(min(r2.x, r2.y), r2.z);
-        p.of_light = select(3u, 1u, is_one);
-        let share = select(1.0 / 3.0, 1.0, is_one);
+        let reach = deepest(strata[source]);
+        p.count = select(3u, 1u, reach * reach < SHALLOW * SHALLOW * min(min(r2.x, r2.y), r2.z));
+        let share = 1.0 / f32(p.count);
         p.charge = Charge(share * p.charge.power, share * p.charge.x, share * p.charge.y, share * p.charge.z);
     }
-    p.count = p.of_light;
-    if SURFACE { p.count += 1u; }
     return p;
 }
 
-fn part(p: ptr<function, Parts>, source: u32, k: u32) -> Part {
-    if SURFACE && k >= (*p).of_light {
-        let own = charges[transport.source_count + source];
-        let sign = select(1.0, -1.0, LIGHT);
-        return Part(Charge(sign * own.power, sign * own.x, sign * own.y, sign * own.z), vec4f(0.0), vec4f(0.0));
-    }
-    if (*p).of_light == 1u { return Part((*p).charge, (*p).mean.mean, (*p).mean.square); }
-    return Part((*p).charge, ways((*p).strata, k), vec4f(0.0));
+struct Part {
+    offset: Places,
+    line: Line,
+}
+
+fn part(p: ptr<function, Parts>, source: u32, d: Places, k: u32) -> Part {
+    if !LIGHT { return Part(d, Line(vec3f(0.0), vec4f(0.0))); }
+    let u = (*p).direction;
+    if (*p).count == 1u { return Part(beyond(d, -u, (*p).mean.mean), Line(u, (*p).mean.square)); }
+    return Part(beyond(d, -u, ways(strata[source], k)), Line(u, vec4f(0.0)));
 }
 
 // Adds what a source sends to a group of receivers of this size.
 fn collect(e: ptr<function, Expansion>, source: u32, place: Place, size: f32) {
     let d = minus(place, together(bounds[source].xyz));
-    let shape = shapes[source];
     var all = parts(source, d);
     for (var k = 0u; k < all.count; k++) {
-        let own = part(&all, source, k);
-        let u = all.strata.direction;
-        add(e, own.charge, beyond(d, -u, own.ways), shape, size, Line(u, own.square));
+        let own = part(&all, source, d, k);
+        add(e, all.charge, own.offset, shapes[source], size, own.line);
     }
 }
 
@@ -267,10 +263,6 @@ fn all_strata(s: Strata) -> Mean {
     let c = ways(s, 2u);
     let mean = (a + b + c) / 3.0;
     return Mean(mean, (a * a + b * b + c * c) / 3.0 - mean * mean);
-}
-
-fn is_dark(power: vec4f) -> bool {
-    return all(power.rgb <= vec3f(0.0));
 }
 
 fn deepest(s: Strata) -> f32 {
@@ -299,13 +291,11 @@ fn settled(e: Expansion, texel: u32, place: Place) -> vec4f {
 // What a source sends to a texel.
 fn arriving(source: u32, texel: u32, receiver: vec3f) -> vec4f {
     let d = beyond(together(receiver - bounds[source].xyz), -shapes[texel].normal, below(texel));
-    let shape = shapes[source];
     var sum = vec4f(0.0);
     var all = parts(source, d);
     for (var k = 0u; k < all.count; k++) {
-        let own = part(&all, source, k);
-        let u = all.strata.direction;
-        sum += sent(own.charge, beyond(d, -u, own.ways), shape, Line(u, own.square));
+        let own = part(&all, source, d, k);
+        sum += sent(all.charge, own.offset, shapes[source], own.line);
     }
     return sum;
 }
@@ -314,16 +304,16 @@ fn arriving(source: u32, texel: u32, receiver: vec3f) -> vec4f {
 fn sent(c: Charge, o: Places, shape: Shape, line: Line) -> vec4f {
     let r2 = square(o);
     let a2 = 2.0 * shape.spread * shape.spread;
-    let far = max(r2, vec4f(LEAST_R2));
-    let jet = potential_jet(far);
+    let jet = potential_jet(max(r2, vec4f(LEAST_R2)));
     let t = c.x * o.x + c.y * o.y + c.z * o.z;
     let more = spread_out(jet, o, shape, line);
-    var of_point = c.power * jet.value * more.power - 2.0 * t * more.moment * jet.first;
-    of_point += turned(c, jet, o, shape);
+    let of_point = c.power * jet.value * more.power - 2.0 * t * more.moment * jet.first + turned(c, jet, o, shape);
     let near = r2 < vec4f(2.0 * a2);
     var sum = of_point;
     // A loop in place of a branch, as above.
-    for (var k = select(1u, 0u, any(near)); k < 1u; k++) { sum = select(of_point, of_disc(c, o, r2, a2, shape.normal), near); }
+    for (var k = select(1u, 0u, any(near)); k < 1u; k++) {
+        sum = select(of_point, of_disc(c, o, r2, a2, normalize(shape.normal)), near);
+    }
     return sum;
 }
 

@@ -13,7 +13,7 @@ struct Transport {
     robin: vec4f,
     // How much single scattering counts.
     boost: vec4f,
-    texel_count: u32,
+    site_count: u32,
     top_level: u32,
     // Index of refraction, inside over outside.
     eta: f32,
@@ -21,21 +21,22 @@ struct Transport {
     source_count: u32,
     // Workgroups of the solver's sums.
     groups: u32,
-    // Square of how far a texel of usual size reaches from its middle, mm²: those at a rim hold less than what lies around theirs.
+    // Square of how far a site of usual size reaches from its middle, mm²: those at a rim hold less than what lies around theirs.
     reach_squared: f32,
-    padding0: u32,
-    padding1: u32,
+    // Of the atlas, and 4^l of them make up a site.
+    texel_count: u32,
+    texels_per_site: u32,
     // Millimetres.
     eye: vec3f,
-    padding2: u32,
-    // Where each level above the texels begins among the nodes.
+    // Where light begins among the bounds of sources.
+    light_bounds: u32,
+    // Where each level above the sites begins among the nodes.
     offsets: array<vec4u, 4>,
     // Where each level begins among the sources.
     sources: array<vec4u, 4>,
 }
 
-// What a source sends, channel by channel: power about its middle, and its first moment with what else sends as a dipole does. Of light that
-// entered a texel the power alone, as its place is known from `Strata`.
+// What a source sends, channel by channel: power about its middle, and its first moment with what else sends as a dipole does.
 struct Charge {
     power: vec4f,
     x: vec4f,
@@ -49,8 +50,7 @@ struct Strata {
     direction: vec3f,
     // Mean cosine to the inward normal.
     cosine: f32,
-    // RGB, mm. In w, of a texel: of the first the share of what entered that comes from all around, of the last the way straight inwards to the
-    // other side, mm.
+    // RGB, mm. In w: of the first the share of what entered that comes from all around, of the last the way straight inwards to the other side, mm.
     ways: array<vec4f, 3>,
 }
 

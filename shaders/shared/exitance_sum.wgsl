@@ -14,9 +14,14 @@ fn texel_place(texel: u32, position: vec3f) -> Place {
     return position;
 }
 
-// From what a source sends to receivers, squared, mm².
-fn distance_square(source: u32, place: Place) -> f32 {
-    let offset = place - bounds[source].xyz;
+// Where what a source sends comes from, and how large that is.
+fn source_bounds(source: u32) -> vec4f {
+    return bounds[source];
+}
+
+// From there to receivers, squared, mm².
+fn distance_square(source: u32, seen: vec4f, place: Place) -> f32 {
+    let offset = place - seen.xyz;
     return dot(offset, offset);
 }
 

@@ -121,17 +121,6 @@ fn arrival(index: u32, position: vec3f, nearest_squared: f32, fallback: vec3f) -
     return Arrival(to_light, strength * (cone * cone / distance_squared));
 }
 
-fn safe_normalize(v: vec3f, fallback: vec3f) -> vec3f {
-    let length_squared = dot(v, v);
-    if length_squared > 0.0 { return v * inverseSqrt(length_squared); }
-    return fallback;
-}
-
-fn any_perpendicular(n: vec3f) -> vec3f {
-    let axis = select(vec3f(1.0, 0.0, 0.0), vec3f(0.0, 1.0, 0.0), abs(n.x) > 0.7);
-    return safe_normalize(cross(axis, n), axis);
-}
-
 // Tangent of the angle between two unit vectors, up to 5.
 fn tangent_between(a: vec3f, b: vec3f) -> f32 {
     return length(cross(a, b)) / max(dot(a, b), 0.2);

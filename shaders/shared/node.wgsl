@@ -1,20 +1,28 @@
-// A group of texels as it bounds rays, and as it receives. Lengths in mm.
+// A group of sites as it bounds rays, and as it receives. Lengths in mm.
 struct Node {
     // Middle by area, and no disc of a member reaches further from it.
     centre: vec3f,
     radius: f32,
-    // Mean of the texels' places, and none is further from it.
+    // Which way it faces, unit length, and no disc reaches further from the centre along that.
+    axis: vec3f,
+    thickness: f32,
+    // Mean of the sites' places, and none is further from it.
     middle: vec3f,
     reach: f32,
-    // Rms distance of the texels from it.
+    // Rms distance of the sites from it, and how many there are.
     scatter: f32,
-    texels: f32,
-    // Rms distance of the area from the centre.
-    spread: f32,
-    padding: f32,
+    sites: f32,
+    padding0: f32,
+    padding1: f32,
 }
 
-// A texel is a square of unknown turn; the circle around it leaves no gaps.
+// How far a node reaches along a direction, from its centre.
+fn extent_along(node: Node, direction: vec3f) -> f32 {
+    let cosine = min(abs(dot(node.axis, direction)), 1.0);
+    return node.thickness * cosine + node.radius * sqrt(1.0 - cosine * cosine);
+}
+
+// A site is a square of unknown turn; the circle around it leaves no gaps.
 fn disc_reach(area: f32) -> f32 {
     return sqrt(0.5 * area);
 }

@@ -1,4 +1,4 @@
-// φ under a texel, in each channel: a parabola of the depth, less what the light that enters there leaves behind.
+// φ under a site, in each channel: a parabola of the depth, less what the light that enters there leaves behind.
 struct Parabola {
     surface: vec3f,
     // Way straight inwards to the other side, mm.

@@ -1,10 +1,13 @@
-// Rays through the body, whose surface is the texels' discs. The module declares `transport`, `nodes`, `texel_positions` and `texel_normals`.
+// Rays through the body, whose surface is the sites' discs. The module declares `transport`, `nodes`, `site_positions` and `site_normals`.
 
 // Further than any body is large, mm.
 const FAR: f32 = 1e30;
 const NO_SITE: u32 = 0xffffffffu;
 // Discs that a ray grazes by less are not met.
 const LEAST_COSINE: f32 = 0.02;
+
+// A flat node is as thick as this share of its radius: rounding must not let rays through.
+const FLATNESS: f32 = 0.01;
 
 struct Crossing {
     // Along the ray, mm; FAR where there is none.
@@ -20,24 +23,18 @@ fn first_crossing(origin: vec3f, direction: vec3f, begin: f32, side: f32) -> Cro
 
 fn crossing(origin: vec3f, direction: vec3f, begin: f32, most: f32, side: f32, any_will_do: bool) -> Crossing {
     var best = Crossing(most, NO_SITE);
-    let beyond = sqrt(transport.reach_squared);
     var level = transport.top_level;
     var node = 0u;
     loop {
         if level > 0u {
-            let index = node_index(level, node);
-            let offset = nodes[index].centre - origin;
-            let reach = nodes[index].radius + beyond;
-            let along = dot(offset, direction);
-            let away = offset - along * direction;
-            if dot(away, away) < reach * reach && along + reach > begin && along - reach < best.t {
+            if is_met(nodes[node_index(level, node)], origin, direction, begin, best.t) {
                 level -= 1u;
                 node *= 4u;
                 continue;
             }
         } else {
-            let place = texel_positions[node];
-            let normal = texel_normals[node].xyz;
+            let place = site_positions[node];
+            let normal = site_normals[node].xyz;
             let cosine = dot(normal, direction);
             if cosine * side > LEAST_COSINE {
                 let offset = place.xyz - origin;
@@ -46,13 +43,29 @@ fn crossing(origin: vec3f, direction: vec3f, begin: f32, most: f32, side: f32, a
                 if t > begin && t < best.t && dot(beside, beside) < max(0.5 * place.w, transport.reach_squared) { best = Crossing(t, node); }
             }
         }
-        let next = passed(transport.texel_count, transport.top_level, Step(level, node));
+        let next = passed(transport.site_count, transport.top_level, Step(level, node));
         level = next.level;
         node = next.node;
         if level == transport.top_level || (any_will_do && best.site != NO_SITE) { break; }
     }
     if best.site == NO_SITE { best.t = FAR; }
     return best;
+}
+
+// Whether some of a ray lies in a node's ball and between its two planes.
+fn is_met(node: Node, origin: vec3f, direction: vec3f, begin: f32, end: f32) -> bool {
+    let offset = node.centre - origin;
+    let along = dot(offset, direction);
+    let away = offset - along * direction;
+    let half2 = node.radius * node.radius - dot(away, away);
+    if half2 <= 0.0 { return false; }
+    let half = sqrt(half2);
+    let up = dot(offset, node.axis);
+    let rate = dot(direction, node.axis);
+    let inverse = select(1.0, -1.0, rate < 0.0) / max(abs(rate), 1e-6);
+    let middle = up * inverse;
+    let between = (node.thickness + FLATNESS * node.radius) * abs(inverse);
+    return min(min(along + half, middle + between), end) > max(max(along - half, middle - between), begin);
 }
 
 // Parts of a ray inside are followed so often.

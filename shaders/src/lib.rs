@@ -53,7 +53,8 @@ macro_rules! composite {
         shader!(
             $name,
             "shared/fresnel.wgsl",
-            "shared/lights.wgsl",
+            "shared/vector.wgsl",
+    "shared/lights.wgsl",
             "shared/area_light.wgsl",
             "shared/environment.wgsl",
             "shared/shadow_map.wgsl",
@@ -82,6 +83,7 @@ pub const SHADOW: Shader = shader!("shadow", "shadow.wgsl");
 pub const VISIBILITY: Shader = shader!(
     "visibility",
     "shared/dispatch.wgsl",
+    "shared/vector.wgsl",
     "shared/lights.wgsl",
     "shared/shadow_map.wgsl",
     "shared/receiver.wgsl",
@@ -92,6 +94,7 @@ pub const GATHER: Shader = shader!(
     "gather",
     "shared/dispatch.wgsl",
     "shared/fresnel.wgsl",
+    "shared/vector.wgsl",
     "shared/lights.wgsl",
     "shared/area_light.wgsl",
     "shared/environment.wgsl",
@@ -124,11 +127,19 @@ pub const DUAL_ORIENTED: Shader = scatter!(
     "shared/exitance_sum.wgsl",
     "dual.wgsl"
 );
-/// Texels → their tree of discs, for the boundary solver.
-pub const SITES: Shader = shader!(
-    "sites",
+/// Texels → sites, fewer of them, for the boundary solver.
+pub const GROUP: Shader = shader!(
+    "group",
     "shared/dispatch.wgsl",
     "shared/cluster.wgsl",
+    "shared/grouping.wgsl",
+    "shared/site_light.wgsl",
+    "transport/group.wgsl"
+);
+/// Sites → their tree of discs.
+pub const SITES: Shader = transport!(
+    "sites",
+    "shared/vector.wgsl",
     "shared/shape.wgsl",
     "shared/node.wgsl",
     "shared/level.wgsl",
@@ -139,9 +150,11 @@ pub const SOURCE: Shader = transport!(
     "source",
     "shared/shape.wgsl",
     "shared/fresnel.wgsl",
+    "shared/vector.wgsl",
     "shared/lights.wgsl",
     "shared/node.wgsl",
     "shared/ray.wgsl",
+    "shared/site_light.wgsl",
     "transport/source.wgsl"
 );
 /// What texels send, summed up their tree.
@@ -159,8 +172,13 @@ pub const POTENTIAL: Shader = transport!(
     "dual.wgsl"
 );
 /// What leaves a concave body → what comes in again.
-pub const RETURNING: Shader =
-    transport!("returning", "shared/shape.wgsl", "shared/level.wgsl", "transport/returning.wgsl");
+pub const RETURNING: Shader = transport!(
+    "returning",
+    "shared/shape.wgsl",
+    "shared/level.wgsl",
+    "shared/node.wgsl",
+    "transport/returning.wgsl"
+);
 /// The boundary equation's next try.
 pub const KRYLOV: Shader = transport!("krylov", "shared/shape.wgsl", "transport/krylov.wgsl");
 /// Fluence → radiant exitance.
@@ -170,10 +188,35 @@ pub const LAYER: Shader =
 pub const PICTURE: Shader = transport!(
     "picture",
     "shared/parabola.wgsl",
+    "shared/vector.wgsl",
     "shared/lights.wgsl",
     "shared/node.wgsl",
     "shared/ray.wgsl",
     "transport/picture.wgsl"
+);
+/// Sites → those around each.
+pub const NEAR: Shader = transport!(
+    "near",
+    "shared/shape.wgsl",
+    "shared/node.wgsl",
+    "shared/surroundings.wgsl",
+    "transport/near.wgsl"
+);
+/// Radiant exitance of sites → of texels.
+pub const SMOOTH: Shader = transport!(
+    "smooth",
+    "shared/vector.wgsl",
+    "shared/surroundings.wgsl",
+    "shared/plane.wgsl",
+    "transport/smooth.wgsl"
+);
+/// The same of texels about which the sites around their own say nothing.
+pub const STRANGERS: Shader = transport!(
+    "strangers",
+    "shared/vector.wgsl",
+    "shared/node.wgsl",
+    "shared/plane.wgsl",
+    "transport/strangers.wgsl"
 );
 /// What the groups leave for points → radiant exitance of every vertex.
 pub const VERTICES: Shader = scatter!(
@@ -214,7 +257,7 @@ pub const COMPOSITE_FRAGMENTS: Shader = composite!(
 );
 
 /// Every module, in the order light flows through them.
-pub const ALL: [Shader; 26] = [
+pub const ALL: [Shader; 30] = [
     DEFORM,
     ADOPT,
     NORMALS,
@@ -229,6 +272,7 @@ pub const ALL: [Shader; 26] = [
     DUAL_ORIENTED,
     VERTICES,
     PATTERN,
+    GROUP,
     SITES,
     SOURCE,
     MERGE,
@@ -237,6 +281,9 @@ pub const ALL: [Shader; 26] = [
     KRYLOV,
     LAYER,
     PICTURE,
+    NEAR,
+    SMOOTH,
+    STRANGERS,
     RESOLVE,
     COMPOSITE,
     COMPOSITE_VERTICES,

@@ -30,39 +30,49 @@ struct State {
 }
 
 @group(0) @binding(0) var<uniform> transport: Transport;
-// φ_Q, and c in w.
+// φ_Q.
 @group(0) @binding(1) var<storage, read> given: array<vec4f>;
-// Σ A [(c_G φ − 4 c_G Γ) G + φ H] of the trial.
+// Σ A [(c_G φ − 4 c_G Γ) G + φ H] of the trial, and c in w.
 @group(0) @binding(2) var<storage, read> sums: array<vec4f>;
 @group(0) @binding(3) var<storage, read> shapes: array<Shape>;
-// Each direction and what A makes of it, then the solution so far and what A makes of that.
+// Each direction, what A makes of it and what of it comes in again, then the same of the solution so far.
 @group(0) @binding(4) var<storage, read_write> directions: array<vec4f>;
 @group(0) @binding(5) var<storage, read_write> state: State;
 @group(0) @binding(6) var<storage, read_write> partial: array<vec4f>;
-// φ of the trial, then the best there is.
+// φ of the trial, then the best there is and its Γ.
 @group(0) @binding(7) var<storage, read_write> fluence: array<vec4f>;
+// Of the trial, from `source_count` on: Γ.
+@group(0) @binding(8) var<storage, read> leaving: array<vec4f>;
 
 var<workgroup> shared_sums: array<vec4f, 64>;
 
-fn place(direction: u32, texel: u32) -> u32 {
-    return (direction * transport.texel_count + texel) * 2u;
+fn place(direction: u32, site: u32) -> u32 {
+    return (direction * transport.site_count + site) * 3u;
 }
 
-fn solution(texel: u32) -> u32 {
-    return place(DIRECTIONS, texel);
+fn solution(site: u32) -> u32 {
+    return place(DIRECTIONS, site);
 }
 
-fn found(texel: u32) -> u32 {
-    return transport.texel_count + texel;
+fn found(site: u32) -> u32 {
+    return transport.site_count + site;
 }
 
-fn closure(texel: u32) -> f32 {
-    return clamp(given[texel].w, 0.2, 1.2);
+fn found_coming_in(site: u32) -> u32 {
+    return 2u * transport.site_count + site;
+}
+
+fn closure(site: u32) -> f32 {
+    return clamp(sums[site].w, 0.2, 1.2);
 }
 
 // What A makes of the trial.
-fn made(texel: u32) -> vec3f {
-    return closure(texel) * fluence[texel].rgb + sums[texel].rgb;
+fn made(site: u32) -> vec3f {
+    return closure(site) * fluence[site].rgb + sums[site].rgb;
+}
+
+fn comes_in(site: u32) -> vec4f {
+    return leaving[transport.source_count + site];
 }
 
 // Sum over the workgroup.
@@ -82,7 +92,7 @@ fn reduced(value: vec4f, local: u32) -> vec4f {
 @compute @workgroup_size(64)
 fn measure(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) local: u32) {
     var sum = vec4f(0.0);
-    for (var index = group.x * 64u + local; index < transport.texel_count; index += transport.groups * 64u) {
+    for (var index = group.x * 64u + local; index < transport.site_count; index += transport.groups * 64u) {
         let area = shapes[index].area;
         sum += vec4f(given[index].rgb * area, area);
     }
@@ -102,10 +112,11 @@ fn settle_mean(@builtin(local_invocation_index) local: u32) {
 @compute @workgroup_size(64)
 fn start(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_index) local: u32) {
     let index = item_index(group, groups, local);
-    if index >= transport.texel_count { return; }
+    if index >= transport.site_count { return; }
     if state.count == 0u {
         directions[solution(index)] = vec4f(0.0);
         directions[solution(index) + 1u] = vec4f(0.0);
+        directions[solution(index) + 2u] = vec4f(0.0);
     }
     fluence[index] = directions[solution(index)];
 }
@@ -114,18 +125,21 @@ fn start(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: v
 @compute @workgroup_size(64)
 fn adopt(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_index) local: u32) {
     let index = item_index(group, groups, local);
-    if index >= transport.texel_count { return; }
+    if index >= transport.site_count { return; }
     directions[solution(index) + 1u] = vec4f(made(index), 0.0);
+    directions[solution(index) + 2u] = comes_in(index);
 }
 
 // The way from the solution to the trial is a new direction.
 @compute @workgroup_size(64)
 fn take(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_index) local: u32) {
     let index = item_index(group, groups, local);
-    if index >= transport.texel_count { return; }
+    if index >= transport.site_count { return; }
     let own = solution(index);
-    directions[place(state.next, index)] = vec4f(fluence[index].rgb - directions[own].rgb, 0.0);
-    directions[place(state.next, index) + 1u] = vec4f(made(index) - directions[own + 1u].rgb, 0.0);
+    let newest = place(state.next, index);
+    directions[newest] = vec4f(fluence[index].rgb - directions[own].rgb, 0.0);
+    directions[newest + 1u] = vec4f(made(index) - directions[own + 1u].rgb, 0.0);
+    directions[newest + 2u] = comes_in(index) - directions[own + 2u];
 }
 
 // Its products with the others.
@@ -143,7 +157,7 @@ fn project_residual(@builtin(workgroup_id) group: vec3u, @builtin(local_invocati
 fn project(group: u32, local: u32, of_direction: bool) {
     var products: array<vec3f, 16>;
     let mean = max(state.mean.rgb, vec3f(1e-30));
-    for (var index = group * 64u + local; index < transport.texel_count; index += transport.groups * 64u) {
+    for (var index = group * 64u + local; index < transport.site_count; index += transport.groups * 64u) {
         let area = shapes[index].area;
         if area <= 0.0 { continue; }
         // √A over φ_Q^¾: a body lit from behind is dark where it is seen, and errors there count.
@@ -256,17 +270,15 @@ fn least_squares(channel: u32) -> vec4f {
 @compute @workgroup_size(64)
 fn part(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_index) local: u32) {
     let index = item_index(group, groups, local);
-    if index >= transport.texel_count { return; }
+    if index >= transport.site_count { return; }
     let own = place(state.next, index);
-    var direction = directions[own].rgb;
-    var image = directions[own + 1u].rgb;
-    for (var k = 0u; k < state.count; k++) {
-        if k == state.next { continue; }
-        direction -= state.weights[k].rgb * directions[place(k, index)].rgb;
-        image -= state.weights[k].rgb * directions[place(k, index) + 1u].rgb;
+    for (var part = 0u; part < 3u; part++) {
+        var left = directions[own + part];
+        for (var k = 0u; k < state.count; k++) {
+            if k != state.next { left -= state.weights[k] * directions[place(k, index) + part]; }
+        }
+        directions[own + part] = left * state.scale;
     }
-    directions[own] = vec4f(direction * state.scale.rgb, 0.0);
-    directions[own + 1u] = vec4f(image * state.scale.rgb, 0.0);
 }
 
 @compute @workgroup_size(1)
@@ -279,13 +291,15 @@ fn turn() {
 @compute @workgroup_size(64)
 fn advance(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_index) local: u32) {
     let index = item_index(group, groups, local);
-    if index >= transport.texel_count || state.failed == 1u { return; }
+    if index >= transport.site_count || state.failed == 1u { return; }
     let own = solution(index);
     var value = directions[own].rgb;
     var image = directions[own + 1u].rgb;
+    var comes = directions[own + 2u].rgb;
     for (var k = 0u; k < state.count; k++) {
         value += state.weights[k].rgb * directions[place(k, index)].rgb;
         image += state.weights[k].rgb * directions[place(k, index) + 1u].rgb;
+        comes += state.weights[k].rgb * directions[place(k, index) + 2u].rgb;
     }
     // Who has no area is no unknown: its row gives its fluence.
     if shapes[index].area <= 0.0 {
@@ -294,8 +308,10 @@ fn advance(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups:
     }
     directions[own] = vec4f(value, 0.0);
     directions[own + 1u] = vec4f(image, 0.0);
+    directions[own + 2u] = vec4f(comes, 0.0);
     fluence[index] = vec4f(value + (given[index].rgb - image) / closure(index), 0.0);
     fluence[found(index)] = vec4f(max(value, vec3f(0.0)), 0.0);
+    fluence[found_coming_in(index)] = vec4f(max(comes, vec3f(0.0)), 0.0);
 }
 
 // Nothing that was found on the way to no approximation is kept.

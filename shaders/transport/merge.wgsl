@@ -1,18 +1,34 @@
-// Merge: what texels send, summed up their tree, four to one.
+// Merge: what sites send, summed up their tree, four to one.
 
 @group(0) @binding(0) var<uniform> level: Level;
 @group(0) @binding(1) var<uniform> transport: Transport;
-@group(0) @binding(2) var<storage, read> bounds: array<vec4f>;
+@group(0) @binding(2) var<storage, read_write> bounds: array<vec4f>;
 @group(0) @binding(3) var<storage, read_write> charges: array<Charge>;
 @group(0) @binding(4) var<storage, read_write> strata: array<Strata>;
 
-// Light that entered.
+// Light that entered a site is where the site is, or nowhere.
+@compute @workgroup_size(64)
+fn light_of_sites(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_index) local: u32) {
+    let site = item_index(group, groups, local);
+    if site >= transport.site_count { return; }
+    charges[site].x = vec4f(0.0);
+    charges[site].y = vec4f(0.0);
+    charges[site].z = vec4f(0.0);
+    place_light(site);
+}
+
+fn place_light(source: u32) {
+    let place = bounds[source];
+    bounds[transport.light_bounds + source] = vec4f(place.xyz, select(0.0, place.w, any(charges[source].power > vec4f(0.0))));
+}
+
 @compute @workgroup_size(64)
 fn light(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_index) local: u32) {
     let node = item_index(group, groups, local);
     if node >= level.node_count { return; }
-    let own = merged(node, 0u);
-    charges[level.source_offset + node] = own;
+    let own = level.source_offset + node;
+    charges[own] = merged(node, 0u);
+    place_light(own);
     var mean: Strata;
     var whole = 0.0;
     for (var k = 0u; k < 4u; k++) {
@@ -28,7 +44,7 @@ fn light(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: v
     mean.direction *= scale;
     mean.cosine *= scale;
     for (var s = 0u; s < 3u; s++) { mean.ways[s] *= scale; }
-    strata[level.source_offset + node] = mean;
+    strata[own] = mean;
 }
 
 // What the surface sends.

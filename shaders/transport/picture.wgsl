@@ -1,13 +1,12 @@
-// Picture: φ under the surface → radiance towards the eye, at every texel, and light that scattered once.
+// Picture: φ under the surface → radiance towards the eye, at every site, and light that scattered once.
 
 @group(0) @binding(0) var<uniform> transport: Transport;
 @group(0) @binding(1) var<uniform> lighting: Gather;
 @group(0) @binding(2) var<storage, read> nodes: array<Node>;
-@group(0) @binding(3) var<storage, read> texel_positions: array<vec4f>;
-@group(0) @binding(4) var<storage, read> texel_normals: array<vec4f>;
-@group(0) @binding(5) var<storage, read> marks: array<u32>;
-@group(0) @binding(6) var<storage, read> parabolas: array<Parabola>;
-@group(0) @binding(7) var<storage, read_write> exitance: array<vec4f>;
+@group(0) @binding(3) var<storage, read> site_positions: array<vec4f>;
+@group(0) @binding(4) var<storage, read> site_normals: array<vec4f>;
+@group(0) @binding(5) var<storage, read> parabolas: array<Parabola>;
+@group(0) @binding(6) var<storage, read_write> site_exitance: array<vec4f>;
 
 const PI: f32 = 3.14159265;
 // Parabolas end at this many depths of the value below the surface.
@@ -36,12 +35,12 @@ fn fluence_along(p: Parabola, cosine: f32, s: vec3f, chord: f32) -> vec3f {
 @compute @workgroup_size(64)
 fn gathered(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_index) local: u32) {
     let index = item_index(group, groups, local);
-    if index >= transport.texel_count { return; }
-    let place = texel_positions[index];
-    let normal = texel_normals[index].xyz;
+    if index >= transport.site_count { return; }
+    let place = site_positions[index];
+    let normal = normalize(site_normals[index].xyz);
     let direction = normalize(place.xyz - transport.eye);
     let facing = -dot(direction, normal);
-    // Beyond the rim a texel may be seen that is turned away itself.
+    // Beyond the rim a site may be seen that is turned away itself.
     if facing < -0.2 { return; }
     let cosine = max(facing, GRAZING);
     let width = sqrt(place.w);
@@ -50,7 +49,7 @@ fn gathered(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups
     let own = parabolas[index];
     var radiance = many(own, far, cosine, chord, direction);
     radiance += transport.boost.rgb * once(own, place.xyz, direction, cosine, chord, width);
-    exitance[index] = vec4f(max(PI * radiance, vec3f(0.0)) * marked_tint(marks[index]), 0.0);
+    site_exitance[index] = vec4f(max(PI * radiance, vec3f(0.0)), 0.0);
 }
 
 // Scattered more than once.
@@ -62,7 +61,7 @@ fn many(own: Parabola, far: Crossing, cosine: f32, chord: f32, direction: vec3f)
     let ends = far.site != NO_SITE;
     if ends {
         other = parabolas[far.site];
-        there = max(dot(texel_normals[far.site].xyz, direction), GRAZING);
+        there = max(dot(normalize(site_normals[far.site].xyz), direction), GRAZING);
     }
     let least = 1e-3 * max(max(own.surface, other.surface), vec3f(1e-30));
     var sum = vec3f(0.0);
@@ -130,7 +129,7 @@ fn arriving_at(index: u32, position: vec3f, width: f32) -> Arriving {
     if lighting.lights[index].kind == POINT { far = length(lighting.lights[index].vector - position); }
     let entry = crossing(position, comes.to_light, 0.0, far, 1.0, false);
     if entry.site == NO_SITE { return Arriving(vec3f(0.0), 0.0); }
-    let at = texel_positions[entry.site].xyz;
+    let at = site_positions[entry.site].xyz;
     let is_dark = any(at < lighting.lights[index].region_low) || any(at > lighting.lights[index].region_high);
     return Arriving(select(comes.strength * parabolas[entry.site].open, vec3f(0.0), is_dark), entry.t);
 }

@@ -4,48 +4,44 @@
 @group(0) @binding(1) var<uniform> transport: Transport;
 @group(0) @binding(2) var<storage, read> bounds: array<vec4f>;
 @group(0) @binding(3) var<storage, read> shapes: array<Shape>;
-// φ of the solver's trial, then what was found.
+// φ of the solver's trial, then what was found, φ and Γ.
 @group(0) @binding(4) var<storage, read> fluence: array<vec4f>;
 // Irradiance that entered, and how much of the sky the body hides.
 @group(0) @binding(5) var<storage, read> entered: array<vec4f>;
-// B A of each source, then Γ of each texel.
+// B A of each source, then Γ of each site.
 @group(0) @binding(6) var<storage, read_write> leaving: array<vec4f>;
 @group(0) @binding(7) var<storage, read_write> charges: array<Charge>;
+@group(0) @binding(8) var<storage, read> nodes: array<Node>;
 
-// Texels whose rays are taken together.
-const GROUP: u32 = 16u;
+// Few rays tell how much is hidden: that may be too much at one site and too little at the next, but no more than so many times what is.
+const MOST_SCALE: f32 = 4.0;
 // Opening angle, squared, and that of groups that do not face one way, which is those whose mean normal, squared, is shorter.
-const THETA_SQUARED: f32 = 0.25;
+const THETA_SQUARED: f32 = 0.12;
 const THETA_SQUARED_MIXED: f32 = 0.04;
 const ONE_WAY: f32 = 0.8;
-fn returning_place(texel: u32) -> u32 {
-    return transport.source_count + texel;
+
+fn returning_place(site: u32) -> u32 {
+    return transport.source_count + site;
 }
 
-// Γ follows from what leaves, and that from Γ: from none, a few times over, so that what the equation makes of a trial is linear in it.
+// Γ follows from what leaves, and that from Γ: from none, so that what the equation makes of a trial is linear in it.
 @compute @workgroup_size(64)
 fn forget(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_index) local: u32) {
     let index = item_index(group, groups, local);
-    if index < transport.texel_count { leaving[returning_place(index)] = vec4f(0.0); }
+    if index < transport.site_count { leaving[returning_place(index)] = vec4f(0.0); }
 }
 
-// Of the trial, and of what was found.
 @compute @workgroup_size(64)
 fn leave(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_index) local: u32) {
     let index = item_index(group, groups, local);
-    if index < transport.texel_count { leave_texel(index, fluence[index].rgb); }
-}
-
-@compute @workgroup_size(64)
-fn leave_found(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_index) local: u32) {
-    let index = item_index(group, groups, local);
-    if index < transport.texel_count { leave_texel(index, fluence[transport.texel_count + index].rgb); }
-}
-
-fn leave_texel(index: u32, fluence: vec3f) {
-    let robin = transport.robin.rgb;
-    let exitance = robin * fluence - (4.0 * robin - 1.0) * leaving[returning_place(index)].rgb;
+    if index >= transport.site_count { return; }
+    let exitance = transport.robin.rgb * fluence[index].rgb - mirrored() * leaving[returning_place(index)].rgb;
     leaving[index] = vec4f(shapes[index].area * exitance, 0.0);
+}
+
+// How much less leaves than the boundary's share of φ, per light that comes in.
+fn mirrored() -> vec3f {
+    return 4.0 * transport.robin.rgb - 1.0;
 }
 
 @compute @workgroup_size(64)
@@ -59,40 +55,45 @@ fn merge(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: v
     leaving[level.source_offset + node] = sum;
 }
 
+// Were Γ everywhere what it is here, this would be Γ at once: two walks then leave what six would by themselves.
+@compute @workgroup_size(64)
+fn come_in(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_index) local: u32) {
+    let index = item_index(group, groups, local);
+    if index >= transport.site_count { return; }
+    let arrives = returning(index, normalize(shapes[index].normal));
+    let own = mirrored() * arrives.w;
+    leaving[returning_place(index)] = vec4f((arrives.rgb + own * leaving[returning_place(index)].rgb) / (1.0 + own), 0.0);
+}
+
+// What the trial sends.
 @compute @workgroup_size(64)
 fn charge(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_index) local: u32) {
     let index = item_index(group, groups, local);
-    if index < transport.texel_count { charge_texel(index, fluence[index].rgb); }
+    if index < transport.site_count { send(index, fluence[index].rgb, leaving[returning_place(index)].rgb); }
 }
 
+// And what was found.
 @compute @workgroup_size(64)
 fn charge_found(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_index) local: u32) {
     let index = item_index(group, groups, local);
-    if index < transport.texel_count { charge_texel(index, fluence[transport.texel_count + index].rgb); }
+    if index >= transport.site_count { return; }
+    send(index, fluence[transport.site_count + index].rgb, fluence[2u * transport.site_count + index].rgb);
 }
 
-fn charge_texel(index: u32, fluence: vec3f) {
+fn send(index: u32, fluence: vec3f, comes_in: vec3f) {
     let shape = shapes[index];
-    let comes_in = returning(index, shape.normal);
-    leaving[returning_place(index)] = vec4f(comes_in, 0.0);
     let power = shape.area * transport.robin.rgb * (fluence - 4.0 * comes_in);
-    let moment = shape.area * transport.diffusion.rgb * fluence;
-    charges[transport.source_count + index] = Charge(
-        vec4f(power, 0.0),
-        vec4f(moment * shape.normal.x, 0.0),
-        vec4f(moment * shape.normal.y, 0.0),
-        vec4f(moment * shape.normal.z, 0.0));
+    // Without absorption φ is the same everywhere: what is in w then tells how much of all directions is body.
+    let moment = shape.area * vec4f(transport.diffusion.rgb * fluence, -1.0);
+    charges[transport.source_count + index] =
+        Charge(vec4f(power, 0.0), moment * shape.normal.x, moment * shape.normal.y, moment * shape.normal.z);
 }
 
-// Of what leaves elsewhere, what falls on a texel, W/m². Form factors know no obstacles; they are scaled down to what the texel really sees of the body.
-fn returning(index: u32, normal: vec3f) -> vec3f {
-    // Few rays tell: those of a group of texels.
-    let first = index / GROUP * GROUP;
-    let last = min(first + GROUP, transport.texel_count);
-    var hidden = 0.0;
-    for (var k = first; k < last; k++) { hidden += entered[k].w; }
-    hidden /= f32(last - first);
-    if hidden == 0.0 { return vec3f(0.0); }
+// Of what leaves elsewhere, what falls on a site, W/m², and in w the share of its sky from which that comes. Form factors know no obstacles; they are
+// scaled down to what the site really sees of the body.
+fn returning(index: u32, normal: vec3f) -> vec4f {
+    let hidden = entered[index].w;
+    if hidden == 0.0 { return vec4f(0.0); }
     let receiver = bounds[index].xyz;
     var sum = vec3f(0.0);
     var seen = 0.0;
@@ -103,27 +104,27 @@ fn returning(index: u32, normal: vec3f) -> vec3f {
         let place = bounds[source];
         let offset = place.xyz - receiver;
         let square = dot(offset, offset);
-        // Nothing of it is above the horizon.
-        let below = dot(offset, normal) < -place.w;
+        let receives = dot(normal, offset);
+        var above = receives;
+        if at_level > 0u { above += extent_along(nodes[node_index(at_level, node)], normal); }
         let facing = shapes[source].normal;
         let theta = select(THETA_SQUARED, THETA_SQUARED_MIXED, dot(facing, facing) < ONE_WAY);
-        if at_level > 0u && place.w * place.w > theta * square && !below {
+        if at_level > 0u && place.w * place.w > theta * square && above > 0.0 {
             at_level -= 1u;
             node *= 4u;
             continue;
         }
-        let receives = dot(normal, offset);
         let gives = -dot(facing, offset);
-        if receives > 0.0 && gives > 0.0 && !below {
+        if receives > 0.0 && gives > 0.0 {
             let area = shapes[source].area;
             let form = 0.31830988 * receives * gives / (square * max(square, 0.25 * area));
             seen += form * area;
             sum += form * leaving[source].rgb;
         }
-        let next = passed(transport.texel_count, transport.top_level, Step(at_level, node));
+        let next = passed(transport.site_count, transport.top_level, Step(at_level, node));
         at_level = next.level;
         node = next.node;
         if at_level == transport.top_level { break; }
     }
-    return sum * select(0.0, min(hidden / seen, 1.0), seen > 0.0);
+    return vec4f(sum, seen) * select(0.0, min(hidden / seen, MOST_SCALE), seen > 0.0);
 }

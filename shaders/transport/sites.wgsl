@@ -1,31 +1,35 @@
-// Sites: the texels as discs, summed up their tree, four to one, by area: middles, extents, and bounds for rays.
+// Sites: discs, summed up their tree, four to one, by area: middles, extents, and bounds for rays.
 
 @group(0) @binding(0) var<uniform> level: Level;
-@group(0) @binding(1) var<storage, read> texel_positions: array<vec4f>;
-@group(0) @binding(2) var<storage, read> texel_normals: array<vec4f>;
+@group(0) @binding(1) var<storage, read> site_positions: array<vec4f>;
+@group(0) @binding(2) var<storage, read> site_normals: array<vec4f>;
 @group(0) @binding(3) var<storage, read_write> nodes: array<Node>;
-// Centres and sizes, first of all sources, then of all receivers above the texels.
+// Centres and sizes, first of all sources, then of all receivers above the sites.
 @group(0) @binding(4) var<storage, read_write> bounds: array<vec4f>;
 @group(0) @binding(5) var<storage, read_write> shapes: array<Shape>;
+@group(0) @binding(6) var<uniform> transport: Transport;
 
-fn texel_node(index: u32) -> Node {
-    let place = texel_positions[index];
-    return Node(place.xyz, disc_reach(place.w), place.xyz, 0.0, 0.0, 1.0, disc_spread(place.w), 0.0);
+// Rays meet a disc within its own half diagonal or that of a usual one.
+fn disc_node(index: u32) -> Node {
+    let place = site_positions[index];
+    let reach = max(disc_reach(place.w), sqrt(transport.reach_squared));
+    return Node(place.xyz, reach, normalize(site_normals[index].xyz), 0.0, place.xyz, 0.0, 0.0, 1.0, 0.0, 0.0);
 }
 
 @compute @workgroup_size(64)
-fn from_texels(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_index) local: u32) {
+fn from_discs(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_index) local: u32) {
     let node = item_index(group, groups, local);
     if node >= level.node_count { return; }
     var children: array<Node, 4>;
     for (var k = 0u; k < 4u; k++) {
-        let texel = node * 4u + k;
-        if texel < level.child_count {
-            let area = texel_positions[texel].w;
-            let normal = texel_normals[texel].xyz;
-            children[k] = texel_node(texel);
-            bounds[texel] = vec4f(children[k].centre, select(0.0, NO_SIZE, area > 0.0));
-            shapes[texel] = Shape(normal, children[k].spread, packed_moments(disc_moments(normal)), area, vec3u(0u), 0u);
+        let site = node * 4u + k;
+        if site < level.child_count {
+            let area = site_positions[site].w;
+            let normal = site_normals[site].xyz;
+            children[k] = disc_node(site);
+            bounds[site] = vec4f(site_positions[site].xyz, select(0.0, NO_SIZE, area > 0.0));
+            let moments = packed_moments(disc_moments(normalize(normal)));
+            shapes[site] = Shape(normal, disc_spread(area), moments, area, vec3u(0u), 0u);
         }
     }
     store(node, &children);
@@ -45,12 +49,13 @@ fn from_clusters(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) g
 fn store(node: u32, children: ptr<function, array<Node, 4>>) {
     let count = min(level.child_count - node * 4u, 4u);
     var area = 0.0;
-    var texels = 0.0;
+    var sites = 0.0;
     for (var k = 0u; k < count; k++) {
         area += shapes[level.child_sources + node * 4u + k].area;
-        texels += (*children)[k].texels;
+        sites += (*children)[k].sites;
     }
-    var own = Node(vec3f(0.0), 0.0, vec3f(0.0), 0.0, 0.0, texels, 0.0, 0.0);
+    var own: Node;
+    own.sites = sites;
     var normal = vec3f(0.0);
     var weights = vec4f(0.0);
     for (var k = 0u; k < count; k++) {
@@ -58,9 +63,10 @@ fn store(node: u32, children: ptr<function, array<Node, 4>>) {
         weights[k] = 1.0 / f32(count);
         if area > 0.0 { weights[k] = shape.area / area; }
         own.centre += (*children)[k].centre * weights[k];
-        own.middle += (*children)[k].middle * ((*children)[k].texels / texels);
+        own.middle += (*children)[k].middle * ((*children)[k].sites / sites);
         normal += shape.normal * weights[k];
     }
+    own.axis = safe_normalize(normal, (*children)[0].axis);
     var sum = Moments(vec3f(0.0), vec3f(0.0));
     var turns = Moments(vec3f(0.0), vec3f(0.0));
     var receiving = 0.0;
@@ -73,24 +79,25 @@ fn store(node: u32, children: ptr<function, array<Node, 4>>) {
         sum.diagonal += weights[k] * (square * m.diagonal + offset * offset);
         sum.mixed += weights[k] * (square * m.mixed + offset.xxy * offset.yzz);
         own.radius = max(own.radius, length(offset) + child.radius);
+        own.thickness = max(own.thickness, abs(dot(offset, own.axis)) + extent_along(child, own.axis));
         let t = unpacked_moments(shape.turns);
         let n = shape.normal;
         turns.diagonal += weights[k] * (shape.spread * t.diagonal + n * offset);
         turns.mixed += weights[k] * (shape.spread * t.mixed + 0.5 * (n.xxy * offset.yzz + n.yzz * offset.xxy));
         let apart = child.middle - own.middle;
-        receiving += child.texels / texels * (child.scatter * child.scatter + dot(apart, apart));
+        receiving += child.sites / sites * (child.scatter * child.scatter + dot(apart, apart));
         own.reach = max(own.reach, length(apart) + child.reach);
     }
     own.scatter = sqrt(receiving);
     let trace = sum.diagonal.x + sum.diagonal.y + sum.diagonal.z;
-    own.spread = sqrt(trace);
+    let spread = sqrt(trace);
     let scale = select(0.0, 1.0 / trace, trace > 0.0);
     let moments = packed_moments(Moments(scale * sum.diagonal, scale * sum.mixed));
-    let unit = select(0.0, 1.0 / own.spread, own.spread > 0.0);
+    let unit = select(0.0, 1.0 / spread, spread > 0.0);
     let turning = packed_moments(Moments(unit * turns.diagonal, unit * turns.mixed));
     nodes[level.node_offset + node] = own;
-    shapes[level.source_offset + node] = Shape(normal, own.spread, moments, area, turning, 0u);
-    let size = select(0.0, max(size_of(own.spread, own.radius), NO_SIZE), area > 0.0);
+    shapes[level.source_offset + node] = Shape(normal, spread, moments, area, turning, 0u);
+    let size = select(0.0, max(size_of(spread, own.radius), NO_SIZE), area > 0.0);
     bounds[level.source_offset + node] = vec4f(own.centre, size);
     bounds[level.receiver_offset + node] = vec4f(own.middle, size_of(own.scatter, own.reach));
 }

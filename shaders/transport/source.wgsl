@@ -1,37 +1,36 @@
-// Source: light that entered a texel → the strata in which it scatters first, and their power.
+// Source: light that entered a site → the strata in which it scatters first, and their power.
 
 @group(0) @binding(0) var<uniform> transport: Transport;
 @group(0) @binding(1) var<uniform> lighting: Gather;
-@group(0) @binding(2) var<storage, read> texel_positions: array<vec4f>;
-@group(0) @binding(3) var<storage, read> texel_normals: array<vec4f>;
-@group(0) @binding(4) var<storage, read> texel_irradiance: array<vec4f>;
-@group(0) @binding(5) var<storage, read> marks: array<u32>;
-@group(0) @binding(6) var<storage, read> nodes: array<Node>;
-@group(0) @binding(7) var<storage, read_write> charges: array<Charge>;
-@group(0) @binding(8) var<storage, read_write> strata: array<Strata>;
-// Of each texel irradiance that entered, W/m², and how much of the sky the body hides; then which share of the light of lamps gets there.
-@group(0) @binding(9) var<storage, read_write> entered: array<vec4f>;
+@group(0) @binding(2) var<storage, read> site_positions: array<vec4f>;
+@group(0) @binding(3) var<storage, read> site_normals: array<vec4f>;
+@group(0) @binding(4) var<storage, read> site_lights: array<SiteLight>;
+@group(0) @binding(5) var<storage, read> nodes: array<Node>;
+@group(0) @binding(6) var<storage, read_write> charges: array<Charge>;
+@group(0) @binding(7) var<storage, read_write> strata: array<Strata>;
+// Of each site irradiance that entered, W/m², and how much of the sky the body hides; then which share of the light of lamps gets there.
+@group(0) @binding(8) var<storage, read_write> entered: array<vec4f>;
 
 // Texels over which the surface's curvature is measured.
 const PATCH: u32 = 16u;
-// Directions of the sky from each texel.
-const SKY: u32 = 4u;
+// Directions of the sky from each site.
+const SKY: u32 = 8u;
 // Share of a lamp's light from which on nothing is in its way.
 const LIT: f32 = 0.98;
-// Rays leave the surface beyond so many of a texel's widths.
+// Rays leave the surface beyond so many of a site's width.
 const CLEAR: f32 = 1.0;
 
 @compute @workgroup_size(64)
 fn enter(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_index) local: u32) {
     let index = item_index(group, groups, local);
-    if index >= transport.texel_count { return; }
-    let place = texel_positions[index];
+    if index >= transport.site_count { return; }
+    let place = site_positions[index];
     let position = place.xyz;
-    let normal = texel_normals[index].xyz;
-    let tint = marked_tint(marks[index]);
+    let normal = normalize(site_normals[index].xyz);
+    let tint = site_lights[index].tint.rgb;
     let width = sqrt(place.w);
     let thickness = first_crossing(position, -normal, 0.1 * width, 1.0).t;
-    var diffuse = texel_irradiance[index].rgb;
+    var diffuse = site_lights[index].irradiance.rgb;
     var beam = vec3f(0.0);
     var through = vec3f(0.0);
     var unshadowed = vec3f(0.0);
@@ -100,15 +99,10 @@ fn enter(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: v
     own.ways[2].w = thickness;
     strata[index] = own;
     let power = transport.albedo.rgb * light * share * place.w;
-    let facing = -normal * place.w;
-    charges[index] = Charge(
-        vec4f(power, 0.0),
-        vec4f(vec3f(0.0), facing.x),
-        vec4f(vec3f(0.0), facing.y),
-        vec4f(vec3f(0.0), facing.z));
+    charges[index].power = vec4f(power, 0.0);
     entered[index] = vec4f(light, hidden_sky(index, position, normal, width));
     let open = select(vec3f(0.0), (beam + through) / max(unshadowed, vec3f(1e-30)), unshadowed > vec3f(0.0));
-    entered[transport.texel_count + index] = vec4f(min(open, vec3f(1.0)), 0.0);
+    entered[transport.site_count + index] = vec4f(min(open, vec3f(1.0)), 0.0);
 }
 
 // Mean depth of one of three strata of equal power, in mean free paths, of a ray that ends at an optical depth and leaves this share behind.
@@ -120,18 +114,18 @@ fn stratum(end: vec3f, share: vec3f, k: u32) -> vec3f {
     return select(mean, thin, end < vec3f(0.02));
 }
 
-// Mean curvature of the surface about a texel, 1/mm, above 0 where it bulges.
+// Mean curvature of the surface about a site, 1/mm, above 0 where it bulges.
 fn curvature(index: u32) -> f32 {
     let first = index / PATCH * PATCH;
-    let last = min(first + PATCH, transport.texel_count);
+    let last = min(first + PATCH, transport.site_count);
     var middle = vec3f(0.0);
-    for (var k = first; k < last; k++) { middle += texel_positions[k].xyz; }
+    for (var k = first; k < last; k++) { middle += site_positions[k].xyz; }
     middle /= f32(last - first);
     var turned = 0.0;
     var apart = 0.0;
     for (var k = first; k < last; k++) {
-        let offset = texel_positions[k].xyz - middle;
-        turned += dot(texel_normals[k].xyz, offset);
+        let offset = site_positions[k].xyz - middle;
+        turned += dot(site_normals[k].xyz, offset);
         apart += dot(offset, offset);
     }
     return select(0.0, turned / apart, apart > 0.0);

@@ -153,7 +153,7 @@ impl Body {
 
         let tree = Tree::new(extent.texels);
         check_method(&tree, method, descriptor.evaluate, &device.limits())?;
-        check_transport(&tree, descriptor.transport, method, descriptor.evaluate, &device.limits())?;
+        check_transport(tree.counts[0], descriptor.transport, method, descriptor.evaluate, &device.limits())?;
         check_kernel(profile, method, descriptor.evaluate)?;
         let standing = Standing::new(mesh, atlas);
         let buffers = Buffers::new(device, mesh, atlas, &tree, &standing);

@@ -297,17 +297,45 @@ pub(crate) struct TransportLayout {
     pub decay: [f32; 4],
     pub robin: [f32; 4],
     pub boost: [f32; 4],
-    pub texel_count: u32,
+    pub site_count: u32,
     pub top_level: u32,
     pub eta: f32,
     pub source_count: u32,
     pub groups: u32,
     pub reach_squared: f32,
-    pub padding: [u32; 2],
+    pub texel_count: u32,
+    pub texels_per_site: u32,
     pub eye: [f32; 3],
-    pub padding_2: u32,
+    pub light_bounds: u32,
     pub offsets: [[u32; 4]; 4],
     pub sources: [[u32; 4]; 4],
+}
+
+/// How texels make up sites.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub(crate) struct GroupingLayout {
+    pub texel_count: u32,
+    pub site_count: u32,
+    pub texels_per_site: u32,
+    pub padding: u32,
+}
+
+/// The sites around one.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub(crate) struct SurroundingsLayout {
+    pub count: u32,
+    pub reach: f32,
+    pub sites: [u32; 30],
+}
+
+/// What falls on a site.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub(crate) struct SiteLightLayout {
+    pub irradiance: [f32; 4],
+    pub tint: [f32; 4],
 }
 
 /// A source's extent.
@@ -328,12 +356,13 @@ pub(crate) struct ShapeLayout {
 pub(crate) struct NodeLayout {
     pub centre: [f32; 3],
     pub radius: f32,
+    pub axis: [f32; 3],
+    pub thickness: f32,
     pub middle: [f32; 3],
     pub reach: f32,
     pub scatter: f32,
-    pub texels: f32,
-    pub spread: f32,
-    pub padding: f32,
+    pub sites: f32,
+    pub padding: [f32; 2],
 }
 
 /// What a source sends.

@@ -2,6 +2,7 @@
 
 use crate::layout::TransportLayout;
 use crate::stages::cluster::Tree;
+use crate::stages::transport::Sites;
 use crate::{Error, Medium, fresnel};
 
 /// What the way of light from where it enters to where it leaves is taken to be.
@@ -60,8 +61,27 @@ const MILNE: f64 = 1.065;
 /// What neither scatters nor absorbs is taken to absorb this much, 1/mm.
 const CLEAR: f64 = 1e-6;
 
-/// What the shaders need to know of a medium and of the tree of a body.
-pub(crate) fn layout(medium: &Medium, tree: &Tree, groups: u32, texel: f32) -> TransportLayout {
+/// A site is no wider than this, in mean free paths of the channel where they are shortest.
+const WIDEST_SITE: f32 = 1.5;
+/// Nor are there fewer of them: the shape counts, too.
+const FEWEST_SITES: u32 = 4096;
+/// 16 texels.
+const COARSEST_LEVEL: u32 = 2;
+
+/// Of the texels' tree, that whose nodes are the sites; `texel` is the width of one, mm.
+pub(crate) fn site_level(medium: &Medium, texels: u32, texel: f32) -> u32 {
+    let densest = (0..3).map(|k| medium.sigma_s_prime[k] + medium.sigma_a[k]).fold(0.0, f32::max);
+    let serves = |level: &u32| {
+        let per_site = 1 << (2 * level);
+        texel * (1 << level) as f32 * densest <= WIDEST_SITE && texels / per_site >= FEWEST_SITES
+    };
+    (1..=COARSEST_LEVEL).take_while(serves).last().unwrap_or(0)
+}
+
+/// What the shaders need to know of a medium and of the sites of a body; `texel` is the width of one, mm.
+pub(crate) fn layout(medium: &Medium, sites: &Sites, groups: u32, texel: f32) -> TransportLayout {
+    let tree = &sites.tree;
+    let site = texel * (1 << sites.level) as f32;
     let eta = f64::from(medium.ior);
     let reflected = fresnel::diffuse_internal_reflectance(eta).clamp(0.0, 0.99);
     let robin = ((1.0 - reflected) / (2.0 * (1.0 + reflected) * MILNE)) as f32;
@@ -85,16 +105,17 @@ pub(crate) fn layout(medium: &Medium, tree: &Tree, groups: u32, texel: f32) -> T
         decay: row(3, 0.0),
         robin: [robin, robin, robin, 0.0],
         boost: [boost[0], boost[1], boost[2], 0.0],
-        texel_count: tree.counts[0],
+        site_count: tree.counts[0],
         top_level: tree.top_level(),
         eta: medium.ior,
         source_count: tree.sources(),
         groups,
-        // Half a diagonal of a square texel.
-        reach_squared: 0.5 * texel * texel,
-        padding: [0; 2],
+        // Half a diagonal of a square.
+        reach_squared: 0.5 * site * site,
+        texel_count: sites.texels,
+        texels_per_site: sites.texels_per_site(),
         eye: [0.0; 3],
-        padding_2: 0,
+        light_bounds: tree.sources() + tree.clusters(),
         offsets: Tree::packed(&tree.offsets),
         sources: Tree::packed(&tree.source_offsets),
     }
@@ -133,6 +154,14 @@ mod tests {
             // Linear between the steps: measured .004.
             assert!((shortfall(albedo) - exact).abs() < 0.01, "{albedo}: {} {exact}", shortfall(albedo));
         }
+    }
+
+    #[test]
+    fn sites_are_as_wide_as_light_wanders() {
+        let medium = |scattering| Medium { sigma_s_prime: [scattering; 3], sigma_a: [0.0; 3], ior: 1.0 };
+        let level = |scattering, texels| site_level(&medium(scattering), texels, 0.2);
+        assert_eq!([10.0, 3.0, 1.5, 0.1].map(|scattering| level(scattering, 200_000)), [0, 1, 2, 2]);
+        assert_eq!([10_000, 40_000, 70_000].map(|texels| level(0.1, texels)), [0, 1, 2]);
     }
 
     #[test]

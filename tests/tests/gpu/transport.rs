@@ -69,6 +69,55 @@ fn exitance_is_that_of_dense_sums() {
     notices(agrees(&sphere_with(48), darker, MEDIUM, 0.03));
 }
 
+const RINGS: usize = 48;
+
+/// On a ball the same everywhere at the same height towards the light: mean exitance in so many rings.
+fn rings(fixture: &Fixture, to_light: [f64; 3]) -> Vec<[f64; 3]> {
+    let mut sums = vec![([0.0; 3], 0.0); RINGS];
+    for (source, exitance) in fixture.sources().iter().zip(fixture.exitance()) {
+        let (sum, area) = &mut sums[height(source, to_light) as usize];
+        (0..3).for_each(|k| sum[k] += source.area * exitance[k]);
+        *area += source.area;
+    }
+    sums.into_iter().map(|(sum, area)| sum.map(|value| value / area.max(1e-30))).collect()
+}
+
+/// In rings.
+fn height(source: &Source, to_light: [f64; 3]) -> f64 {
+    let cosine: f64 = (0..3).map(|k| source.normal[k] * to_light[k]).sum();
+    (0.5 * (1.0 + cosine) * RINGS as f64).clamp(0.0, RINGS as f64 - 0.5)
+}
+
+/// A ball of 25,000 texels, four to a site, against one whose texels are as many as those sites.
+fn sites_stand_for_texels(seen_from: [f64; 3], bound: f64) -> Check {
+    let to_light = [0.48, 0.6, 0.64];
+    let solved = |atlas: u32| {
+        let mut fixture = fixture(&sphere_with(atlas), THIN, Transport::Boundary);
+        fixture.run(&Pose::rest(0).frame(&[sun(to_light.map(|x| x as f32))]));
+        fixture
+    };
+    let (coarse, fine) = (solved(192), solved(96));
+    let rings = rings(&fine, to_light);
+    let expected: Vec<[f64; 3]> = coarse
+        .sources()
+        .iter()
+        .map(|source| {
+            let at = (height(source, seen_from) - 0.5).clamp(0.0, RINGS as f64 - 1.001);
+            let part = at.fract();
+            let [below, above] = [rings[at as usize], rings[at as usize + 1]];
+            std::array::from_fn(|k| below[k] * (1.0 - part) + above[k] * part)
+        })
+        .collect();
+    at_most("four texels to a site", apart(&coarse, &coarse.exitance(), &expected), bound)
+}
+
+/// BOUND
+#[test]
+fn a_site_stands_for_its_texels() {
+    holds(sites_stand_for_texels([0.48, 0.6, 0.64], 0.02));
+    notices(sites_stand_for_texels([0.6, 0.48, 0.64], 0.02));
+}
+
 fn pose(frame: f32) -> (Pose, [Light; 1]) {
     let mut pose = Pose::rest(1);
     pose.warp.twist = (2.0 * frame).to_radians();

@@ -133,7 +133,7 @@ impl Body {
         }
         let solver = if pending.contains(Stage::Scatter) { self.solver.take() } else { None };
         if let Some(solver) = solver {
-            solver.encode(encoder, stages, &self.tree, &mut recording);
+            solver.encode(encoder, stages, &mut recording);
         } else if pending.contains(Stage::Scatter) {
             let mut pass = Pass::begin(encoder, Stage::Scatter, &mut recording);
             let pattern = self.pattern.as_ref().zip(stages.scatter.pattern.get());

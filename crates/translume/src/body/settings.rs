@@ -109,7 +109,7 @@ impl Body {
     /// [`Error::Frame`] where the method or the place of evaluation is not the solver's, [`Error::Limit`] where the device cannot hold what it
     /// remembers.
     pub fn set_transport(&mut self, transport: Transport) -> Result<(), Error> {
-        check_transport(&self.tree, transport, self.method, self.evaluate, &self.limits)?;
+        check_transport(self.extent.texels, transport, self.method, self.evaluate, &self.limits)?;
         self.method_stale |= transport != self.solver.transport;
         self.solver.transport = transport;
         self.renew_surface();
@@ -129,7 +129,7 @@ impl Body {
     pub fn set_method(&mut self, method: Method) -> Result<(), Error> {
         method.validate()?;
         check_method(&self.tree, method, self.evaluate, &self.limits)?;
-        check_transport(&self.tree, self.solver.transport, method, self.evaluate, &self.limits)?;
+        check_transport(self.extent.texels, self.solver.transport, method, self.evaluate, &self.limits)?;
         check_kernel(&self.profile, method, self.evaluate)?;
         self.method_stale |= method != self.method;
         self.method = method;
@@ -142,7 +142,7 @@ impl Body {
     /// [`Error::Frame`] where the method has no points, [`Error::Limit`] where the device cannot hold what it remembers.
     pub fn set_evaluate(&mut self, evaluate: Evaluate) -> Result<(), Error> {
         check_method(&self.tree, self.method, evaluate, &self.limits)?;
-        check_transport(&self.tree, self.solver.transport, self.method, evaluate, &self.limits)?;
+        check_transport(self.extent.texels, self.solver.transport, self.method, evaluate, &self.limits)?;
         check_kernel(&self.profile, self.method, evaluate)?;
         self.evaluate = evaluate;
         Ok(())

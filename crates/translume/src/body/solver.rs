@@ -3,10 +3,9 @@
 use super::Body;
 use crate::evaluate::Evaluate;
 use crate::gpu::Pass;
-use crate::stages::cluster::Tree;
 use crate::stages::scatter::Method;
 use crate::stages::scatter::dual::{Demand, ListSizes, Lists};
-use crate::stages::transport::{self as stage, Inputs, Steps, TransportMemory, TransportStage};
+use crate::stages::transport::{self as stage, Inputs, Sites, Steps, TransportMemory, TransportStage};
 use crate::stages::{Stage, StageSet, Stages};
 use crate::timings::Recording;
 use crate::{Error, Frame, Transport, transport};
@@ -66,19 +65,13 @@ impl Solver {
 }
 
 impl Recorded<'_> {
-    pub fn encode(
-        &self,
-        encoder: &mut wgpu::CommandEncoder,
-        stages: &Stages,
-        tree: &Tree,
-        recording: &mut Recording<'_>,
-    ) {
+    pub fn encode(&self, encoder: &mut wgpu::CommandEncoder, stages: &Stages, recording: &mut Recording<'_>) {
         if self.is_first {
             self.memory.forget(encoder);
         }
         if let Some(stage) = stages.transport.get() {
             let mut pass = Pass::begin(encoder, Stage::Scatter, recording);
-            stage.encode(&mut pass, self.memory, tree, self.steps);
+            stage.encode(&mut pass, self.memory, self.steps);
         }
     }
 }
@@ -91,11 +84,21 @@ impl Body {
         is_solved.then_some(Demand { list_entries: self.list_entries, theta, evaluate: Evaluate::PerTexel })
     }
 
+    /// Width of a texel, mm.
+    fn texel_width(&self) -> f32 {
+        self.scale() * self.shape.texel
+    }
+
+    fn site_level(&self) -> u32 {
+        transport::site_level(&self.medium, self.extent.texels, self.texel_width())
+    }
+
     /// Bytes that the next frame's solver takes beyond what it has.
     pub(super) fn solver_growth(&self) -> u64 {
         let demand = self.solver_demand().filter(|_| self.solver.memory.is_none());
         demand.map_or(0, |demand| {
-            stage::bytes(&self.tree) + ListSizes::new(&self.tree, demand, &self.limits).bytes()
+            let sites = Sites::new(self.extent.texels, self.site_level());
+            stage::bytes(&sites) + ListSizes::new(&sites.tree, demand, &self.limits).bytes()
         })
     }
 
@@ -105,11 +108,12 @@ impl Body {
             self.solver.forget();
             return;
         };
-        let tree = &self.tree;
-        let texel = self.scale() * self.shape.texel;
-        let layout = transport::layout(&self.medium, tree, TransportMemory::groups(tree), texel);
+        let sites = Sites::new(self.extent.texels, self.site_level());
+        let groups = TransportMemory::groups(&sites.tree);
+        let layout = transport::layout(&self.medium, &sites, groups, self.texel_width());
         let solver = &mut self.solver;
-        solver.memory = solver.memory.take().filter(|memory| memory.serves(demand, tree, &self.limits));
+        solver.memory =
+            solver.memory.take().filter(|memory| memory.serves(demand, sites.level, &self.limits));
         let mut changed = self.pending.contains(Stage::Scatter);
         if solver.memory.is_none() {
             solver.is_first = true;
@@ -118,18 +122,18 @@ impl Body {
         let stages = &self.stages;
         let memory = solver.memory.get_or_insert_with(|| {
             let stage = stages.transport.get_or_init(|| TransportStage::new(device));
-            let lists = Arc::new(Lists::new(device, ListSizes::new(tree, demand, &self.limits)));
+            let lists = Arc::new(Lists::new(device, ListSizes::new(&sites.tree, demand, &self.limits)));
             TransportMemory::new(
                 device,
                 stage,
-                Inputs { buffers: &self.buffers, tree },
+                Inputs { buffers: &self.buffers, sites },
                 demand,
                 lists,
                 layout,
             )
         });
         if changed {
-            memory.write(queue, layout, tree, demand.theta);
+            memory.write(queue, layout, demand.theta);
         }
         let eye = frame.view.as_ref().map(|view| view.camera.in_mm(self.mm_per_unit).1);
         let gathers = solver.transport == Transport::BoundaryLayers && self.medium.ior == 1.0;
@@ -141,7 +145,6 @@ impl Body {
         let solves = is_new || solver.unsettled > 0;
         solver.unsettled = if is_new { SETTLING } else { solver.unsettled.saturating_sub(1) };
         solver.steps = Steps {
-            warm: !solver.is_first,
             tries: if solves { TransportStage::tries(solver.is_first) } else { solver.steps.tries },
             seen,
         };
@@ -153,7 +156,7 @@ impl Body {
 
 /// Whether the solver can run so.
 pub(super) fn check_transport(
-    tree: &Tree,
+    texels: u32,
     transport: Transport,
     method: Method,
     evaluate: Evaluate,
@@ -169,5 +172,6 @@ pub(super) fn check_transport(
             remedy: "use the dual scatter, evaluated per texel",
         });
     }
-    stage::check(tree, limits)
+    // Sites are texels at worst.
+    stage::check(&Sites::new(texels, 0), limits)
 }

@@ -174,23 +174,29 @@ fn rust_and_wgsl_agree() {
             decay,
             robin,
             boost,
-            texel_count,
+            site_count,
             top_level,
             eta,
             source_count,
             groups,
             reach_squared,
+            texel_count,
+            texels_per_site,
             eye,
+            light_bounds,
             offsets,
             sources
         ]
     );
+    check!(GROUP, "Grouping", GroupingLayout, [texel_count, site_count, texels_per_site]);
+    check!(NEAR, "Surroundings", SurroundingsLayout, [count, reach, sites]);
+    check!(GROUP, "SiteLight", SiteLightLayout, [irradiance, tint]);
     check!(POTENTIAL, "Shape", ShapeLayout, [normal, spread, moments, area, turns]);
     check!(POTENTIAL, "Charge", ChargeLayout, [power, x, y, z]);
     check!(POTENTIAL, "Strata", StrataLayout, [direction, cosine, ways]);
     let (_, expansion) = naga_layout(translume_shaders::POTENTIAL.source, "Expansion");
     assert_eq!(u64::from(expansion), crate::stages::scatter::dual::EXPANSION);
-    check!(SITES, "Node", NodeLayout, [centre, radius, middle, reach, scatter, texels, spread]);
+    check!(SITES, "Node", NodeLayout, [centre, radius, axis, thickness, middle, reach, scatter, sites]);
     check!(
         PICTURE,
         "Parabola",

@@ -11,6 +11,7 @@ use std::path::PathBuf;
 use std::process::Command;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
+use translume::Transport;
 use translume_mesh::builtin;
 
 /// Seconds that pass in the window, however long they take.
@@ -151,6 +152,11 @@ impl Monkey {
                 self.window.app_mut().overlay = overlay;
                 self.window.settle();
             }
+        }
+        // Their kernels stay, too: 80 MB in lavapipe.
+        for transport in Transport::ALL.into_iter().rev() {
+            self.window.app_mut().scene.quality.transport = transport.name().to_owned();
+            self.window.settle();
         }
         // The court stays, and its device has threads of its own.
         self.window.app_mut().judge();

@@ -1,13 +1,13 @@
 //! What the boundary solver of one body remembers.
 
-use super::TransportStage;
+use super::{Sites, TransportStage};
 use crate::Error;
 use crate::buffers::Buffers;
 use crate::gpu::{self, UNIFORM_STRIDE};
 use crate::kernel_table::KernelTableLayout;
 use crate::layout::{
-    ChargeLayout, DualLayout, LevelLayout, NodeLayout, ParabolaLayout, ScatterLayout, ShapeLayout,
-    StateLayout, StrataLayout, TermLayout, TransportLayout,
+    ChargeLayout, DualLayout, GroupingLayout, LevelLayout, NodeLayout, ParabolaLayout, ScatterLayout,
+    ShapeLayout, SiteLightLayout, StateLayout, StrataLayout, SurroundingsLayout, TermLayout, TransportLayout,
 };
 use crate::stages::cluster::Tree;
 use crate::stages::scatter::dual::{Demand, Lists, Plan};
@@ -21,7 +21,9 @@ const TEXELS_PER_GROUP: u32 = 512;
 /// Directions, and the solution.
 const DIRECTIONS: u64 = 5;
 const PRODUCTS: u64 = 16;
+
 pub(crate) struct TransportMemory {
+    pub sites: Sites,
     uniform: wgpu::Buffer,
     levels: wgpu::Buffer,
     state: wgpu::Buffer,
@@ -29,50 +31,65 @@ pub(crate) struct TransportMemory {
     pub lists: Arc<Lists>,
     pub plan: Plan,
     pub groups: u32,
-    pub sites: wgpu::BindGroup,
+    pub group: wgpu::BindGroup,
+    pub discs: wgpu::BindGroup,
     pub source: wgpu::BindGroup,
     pub merge: wgpu::BindGroup,
     pub given: wgpu::BindGroup,
     pub sent: wgpu::BindGroup,
-    pub deeper: wgpu::BindGroup,
+    pub lit_below: wgpu::BindGroup,
+    pub sent_below: wgpu::BindGroup,
     pub returning: wgpu::BindGroup,
     pub krylov: wgpu::BindGroup,
     pub layer: wgpu::BindGroup,
     pub picture: wgpu::BindGroup,
+    pub near: wgpu::BindGroup,
+    pub smooth: wgpu::BindGroup,
+    pub strangers: wgpu::BindGroup,
     layout: TransportLayout,
     /// Of the uniforms as they are; none before they were written.
     theta: Option<f32>,
 }
 
 /// What of the body it reads.
-#[derive(Clone, Copy)]
 pub(crate) struct Inputs<'a> {
     pub buffers: &'a Buffers,
-    pub tree: &'a Tree,
+    pub sites: Sites,
 }
 
 impl TransportMemory {
     pub fn new(
         device: &wgpu::Device,
         stage: &TransportStage,
-        Inputs { buffers, tree }: Inputs<'_>,
+        Inputs { buffers, sites }: Inputs<'_>,
         demand: Demand,
         lists: Arc<Lists>,
         layout: TransportLayout,
     ) -> Self {
+        let tree = &sites.tree;
         let plan = Plan::new(tree, demand, &device.limits());
         let uniform = gpu::uniform_buffer(device, "transport", size_of::<TransportLayout>() as u64);
         let levels =
             gpu::uniform_buffer(device, "potential", UNIFORM_STRIDE * u64::from(plan.start_level + 1));
-        let sizes = Sizes::new(tree);
+        let sizes = Sizes::new(&sites);
         let storage = |label, bytes: u64| gpu::buffer(device, label, bytes);
+        let grouping = gpu::buffer_with(device, "grouping", wgpu::BufferUsages::UNIFORM, &[sites.grouping()]);
+        let site_levels =
+            gpu::buffer_with(device, "levels of sites", wgpu::BufferUsages::UNIFORM, &tree.uniforms());
+        let [site_positions, site_normals, site_exitance] =
+            ["site positions", "site normals", "site exitance"].map(|label| storage(label, sizes.vectors));
+        let surroundings = storage("surroundings", sizes.surroundings);
+        let site_lights = storage("site lights", sizes.lights);
         let bounds = storage("bounds of sites", sizes.bounds);
         let nodes = storage("nodes", sizes.nodes);
         let shapes = storage("shapes", sizes.shapes);
         let charges = storage("charges", sizes.charges);
         let strata = storage("strata", sizes.strata);
-        let [given, sent, deeper] = ["given", "sent", "deeper"].map(|label| storage(label, sizes.vectors));
-        let [entered, fluence] = ["entered", "fluence"].map(|label| storage(label, 2 * sizes.vectors));
+        let [given, sent, light_under, sent_under] =
+            ["given", "sent", "light under the surface", "sent under the surface"]
+                .map(|label| storage(label, sizes.vectors));
+        let entered = storage("entered", 2 * sizes.vectors);
+        let fluence = storage("fluence", 3 * sizes.vectors);
         let leaving = storage("leaving", sizes.leaving);
         let directions = storage("directions", sizes.directions);
         let state = storage("state", size_of::<StateLayout>() as u64);
@@ -83,7 +100,7 @@ impl TransportMemory {
         let bind = |label, layout: &wgpu::BindGroupLayout, resources: &[wgpu::BindingResource<'_>]| {
             gpu::bind(device, label, layout, resources)
         };
-        let level = || gpu::uniform_slot::<LevelLayout>(&buffers.cluster_uniforms);
+        let level = || gpu::uniform_slot::<LevelLayout>(&site_levels);
         let all = wgpu::Buffer::as_entire_binding;
         let sum = |label, sums: &wgpu::Buffer| {
             let resources = [
@@ -101,16 +118,31 @@ impl TransportMemory {
             bind(label, &stage.layouts.potential, &resources)
         };
         Self {
-            sites: bind(
+            group: bind(
+                "group",
+                &stage.layouts.group,
+                &[
+                    all(&grouping),
+                    all(&buffers.texel_positions),
+                    all(&buffers.texel_normals),
+                    all(&buffers.irradiance),
+                    all(&buffers.marks),
+                    all(&site_positions),
+                    all(&site_normals),
+                    all(&site_lights),
+                ],
+            ),
+            discs: bind(
                 "sites",
                 &stage.layouts.sites,
                 &[
                     level(),
-                    all(&buffers.texel_positions),
-                    all(&buffers.texel_normals),
+                    all(&site_positions),
+                    all(&site_normals),
                     all(&nodes),
                     all(&bounds),
                     all(&shapes),
+                    all(&uniform),
                 ],
             ),
             source: bind(
@@ -119,10 +151,9 @@ impl TransportMemory {
                 &[
                     all(&uniform),
                     all(&buffers.gather_uniform),
-                    all(&buffers.texel_positions),
-                    all(&buffers.texel_normals),
-                    all(&buffers.irradiance),
-                    all(&buffers.marks),
+                    all(&site_positions),
+                    all(&site_normals),
+                    all(&site_lights),
                     all(&nodes),
                     all(&charges),
                     all(&strata),
@@ -136,7 +167,8 @@ impl TransportMemory {
             ),
             given: sum("given", &given),
             sent: sum("sent", &sent),
-            deeper: sum("deeper", &deeper),
+            lit_below: sum("lit below", &light_under),
+            sent_below: sum("sent below", &sent_under),
             returning: bind(
                 "returning",
                 &stage.layouts.returning,
@@ -149,6 +181,7 @@ impl TransportMemory {
                     all(&entered),
                     all(&leaving),
                     all(&charges),
+                    all(&nodes),
                 ],
             ),
             krylov: bind(
@@ -163,6 +196,7 @@ impl TransportMemory {
                     all(&state),
                     all(&partial),
                     all(&fluence),
+                    all(&leaving),
                 ],
             ),
             layer: bind(
@@ -170,14 +204,13 @@ impl TransportMemory {
                 &stage.layouts.layer,
                 &[
                     all(&uniform),
-                    all(&buffers.marks),
                     all(&strata),
                     all(&entered),
                     all(&fluence),
-                    all(&deeper),
-                    all(&leaving),
+                    all(&light_under),
+                    all(&sent_under),
                     all(&parabolas),
-                    all(&buffers.exitance),
+                    all(&site_exitance),
                 ],
             ),
             picture: bind(
@@ -187,14 +220,56 @@ impl TransportMemory {
                     all(&uniform),
                     all(&buffers.gather_uniform),
                     all(&nodes),
+                    all(&site_positions),
+                    all(&site_normals),
+                    all(&parabolas),
+                    all(&site_exitance),
+                ],
+            ),
+            near: bind(
+                "near",
+                &stage.layouts.near,
+                &[
+                    all(&uniform),
+                    all(&nodes),
+                    all(&site_positions),
+                    all(&site_normals),
+                    all(&shapes),
+                    all(&surroundings),
+                ],
+            ),
+            smooth: bind(
+                "smooth",
+                &stage.layouts.smooth,
+                &[
+                    all(&uniform),
+                    all(&surroundings),
+                    all(&site_positions),
+                    all(&site_normals),
+                    all(&site_exitance),
                     all(&buffers.texel_positions),
                     all(&buffers.texel_normals),
                     all(&buffers.marks),
-                    all(&parabolas),
                     all(&buffers.exitance),
                 ],
             ),
-            bytes: bytes(tree),
+            strangers: bind(
+                "strangers",
+                &stage.layouts.smooth,
+                &[
+                    all(&uniform),
+                    all(&nodes),
+                    all(&site_positions),
+                    all(&site_normals),
+                    all(&site_exitance),
+                    all(&buffers.texel_positions),
+                    all(&buffers.texel_normals),
+                    all(&buffers.marks),
+                    all(&buffers.exitance),
+                ],
+            ),
+            bytes: bytes(&sites),
+            sites,
             uniform,
             levels,
             state,
@@ -228,7 +303,7 @@ impl TransportMemory {
     }
 
     /// Takes over the medium, and how small clusters have to look.
-    pub fn write(&mut self, queue: &wgpu::Queue, layout: TransportLayout, tree: &Tree, theta: f32) {
+    pub fn write(&mut self, queue: &wgpu::Queue, layout: TransportLayout, theta: f32) {
         let layout = TransportLayout { eye: self.layout.eye, ..layout };
         if self.theta == Some(theta) && layout == self.layout {
             return;
@@ -237,7 +312,7 @@ impl TransportMemory {
         queue.write_buffer(&self.uniform, 0, bytemuck::bytes_of(&self.layout));
         let scatter = ScatterLayout {
             table: KernelTableLayout::default(),
-            texel_count: layout.texel_count,
+            texel_count: layout.site_count,
             first_source: 0,
             source_count: 0,
             top_level: layout.top_level,
@@ -248,7 +323,7 @@ impl TransportMemory {
             sources: layout.sources,
             terms: [TermLayout::default(); 2],
         };
-        queue.write_buffer(&self.levels, 0, &self.plan.uniforms(&scatter, tree, theta));
+        queue.write_buffer(&self.levels, 0, &self.plan.uniforms(&scatter, &self.sites.tree, theta));
     }
 
     /// Whether that is another eye.
@@ -262,8 +337,9 @@ impl TransportMemory {
     }
 
     /// Whether it serves this demand too.
-    pub fn serves(&self, demand: Demand, tree: &Tree, limits: &wgpu::Limits) -> bool {
-        self.plan.capacity >= Plan::new(tree, demand, limits).capacity
+    pub fn serves(&self, demand: Demand, level: u32, limits: &wgpu::Limits) -> bool {
+        level == self.sites.level
+            && self.plan.capacity >= Plan::new(&self.sites.tree, demand, limits).capacity
     }
 }
 
@@ -278,40 +354,59 @@ struct Sizes {
     directions: u64,
     partial: u64,
     parabolas: u64,
-    /// Of a vector per texel.
+    lights: u64,
+    /// Of one where texels are sites.
+    surroundings: u64,
+    /// Of a vector per site.
     vectors: u64,
 }
 
 impl Sizes {
-    fn new(tree: &Tree) -> Self {
-        let (texels, sources, nodes) =
+    fn new(Sites { tree, level, .. }: &Sites) -> Self {
+        let (sites, sources, nodes) =
             (u64::from(tree.counts[0]), u64::from(tree.sources()), u64::from(tree.clusters()).max(1));
         let of = |size: usize, count: u64| size as u64 * count;
         Self {
-            bounds: 16 * (sources + nodes),
+            bounds: 16 * (2 * sources + nodes),
             nodes: of(size_of::<NodeLayout>(), nodes),
             shapes: of(size_of::<ShapeLayout>(), sources),
             charges: of(size_of::<ChargeLayout>(), 2 * sources),
             strata: of(size_of::<StrataLayout>(), sources),
-            leaving: 16 * (sources + texels),
-            directions: 32 * DIRECTIONS * texels,
+            leaving: 16 * (sources + sites),
+            directions: 48 * DIRECTIONS * sites,
             partial: 16 * PRODUCTS * u64::from(TransportMemory::groups(tree)),
-            parabolas: of(size_of::<ParabolaLayout>(), texels),
-            vectors: 16 * texels,
+            parabolas: of(size_of::<ParabolaLayout>(), sites),
+            lights: of(size_of::<SiteLightLayout>(), sites),
+            surroundings: of(size_of::<SurroundingsLayout>(), if *level > 0 { sites } else { 1 }),
+            vectors: 16 * sites,
         }
     }
 }
 
 /// Bytes that the boundary solver of a body takes, apart from the lists.
-pub(crate) fn bytes(tree: &Tree) -> u64 {
-    let Sizes { bounds, nodes, shapes, charges, strata, leaving, directions, partial, parabolas, vectors } =
-        Sizes::new(tree);
-    bounds + nodes + shapes + charges + strata + leaving + directions + partial + parabolas + 7 * vectors
+pub(crate) fn bytes(sites: &Sites) -> u64 {
+    let Sizes {
+        bounds,
+        nodes,
+        shapes,
+        charges,
+        strata,
+        leaving,
+        directions,
+        partial,
+        parabolas,
+        lights,
+        surroundings,
+        vectors,
+    } = Sizes::new(sites);
+    let tree = bounds + nodes + shapes + charges + strata;
+    let levels = UNIFORM_STRIDE * u64::from(sites.tree.top_level()) + size_of::<GroupingLayout>() as u64;
+    tree + levels + leaving + directions + partial + parabolas + lights + surroundings + 12 * vectors
 }
 
 /// Whether a binding holds the largest of it.
-pub(crate) fn check(tree: &Tree, limits: &wgpu::Limits) -> Result<(), Error> {
-    let Sizes { charges, directions, .. } = Sizes::new(tree);
+pub(crate) fn check(sites: &Sites, limits: &wgpu::Limits) -> Result<(), Error> {
+    let Sizes { charges, directions, .. } = Sizes::new(sites);
     let (required, actual) = (charges.max(directions), gpu::binding_limit(limits));
     if required <= actual {
         return Ok(());

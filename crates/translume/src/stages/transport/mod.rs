@@ -5,20 +5,25 @@
 //!
 //! | WGSL | what it does | twin |
 //! | --- | --- | --- |
-//! | `transport/sites.wgsl` | texels as discs, summed up their tree | |
+//! | `transport/group.wgsl` | texels, so many to a site | |
+//! | `transport/sites.wgsl` | sites as discs, summed up their tree | `sites` |
 //! | `transport/source.wgsl`, `shared/ray.wgsl` | where light scatters first, through what it came, what the body hides of the sky | `source`, `rays` |
-//! | `transport/merge.wgsl` | what texels send, summed up their tree | |
+//! | `transport/merge.wgsl` | what sites send, summed up their tree | |
 //! | `kernel/potential.wgsl`, `dual.wgsl` | the sums of the equation | `equation`, `disc` |
 //! | `transport/returning.wgsl` | light that enters again | `equation` |
 //! | `transport/krylov.wgsl` | the next try | `krylov` |
 //! | `transport/layer.wgsl` | exitance by the diffuse law, φ under the surface | `layer` |
 //! | `transport/picture.wgsl` | radiance towards the eye, once scattered light | `picture`, `single` |
+//! | `transport/near.wgsl` | the sites around each | |
+//! | `transport/smooth.wgsl`, `transport/strangers.wgsl` | exitance of texels from that of the sites around | |
 
 mod memory;
+mod sites;
 
 use crate::gpu::{self, Pass, READ, UNIFORM, UNIFORM_ARRAY, UNIFORM_STRIDE, WRITE};
 use crate::stages::cluster::Tree;
 pub(crate) use memory::{Inputs, TransportMemory, bytes, check};
+pub(crate) use sites::Sites;
 use wgpu::ComputePipeline;
 
 /// Tries of the first frame, and of every later one.
@@ -26,28 +31,35 @@ const COLD: u32 = 8;
 const WARM: u32 = 1;
 
 /// How often light that leaves a concave body is followed back into it.
-const RETURNS: u32 = 3;
+const RETURNS: u32 = 2;
 
 pub(crate) struct TransportStage {
     layouts: Layouts,
+    group: ComputePipeline,
     sites: [ComputePipeline; 2],
     enter: ComputePipeline,
+    light_of_sites: ComputePipeline,
     merge_light: ComputePipeline,
     merge_surface: ComputePipeline,
     begin: ComputePipeline,
     /// Inner and leaf of each sum.
     light: [ComputePipeline; 2],
     surface: [ComputePipeline; 2],
-    below: [ComputePipeline; 2],
+    lit_below: [ComputePipeline; 2],
+    sent_below: [ComputePipeline; 2],
     forget: ComputePipeline,
-    /// Of the trial, and of what was found.
-    leave: [ComputePipeline; 2],
+    leave: ComputePipeline,
     merge_leaving: ComputePipeline,
-    charge: [ComputePipeline; 2],
+    come_in: ComputePipeline,
+    charge: ComputePipeline,
+    charge_found: ComputePipeline,
     krylov: Krylov,
     diffuse: ComputePipeline,
     parabola: ComputePipeline,
     gathered: ComputePipeline,
+    near: ComputePipeline,
+    smooth: ComputePipeline,
+    strangers: ComputePipeline,
 }
 
 /// What `krylov.wgsl` does, in its order.
@@ -69,6 +81,7 @@ struct Krylov {
 
 /// Of the bindings of each module.
 struct Layouts {
+    group: wgpu::BindGroupLayout,
     sites: wgpu::BindGroupLayout,
     source: wgpu::BindGroupLayout,
     merge: wgpu::BindGroupLayout,
@@ -77,13 +90,13 @@ struct Layouts {
     krylov: wgpu::BindGroupLayout,
     layer: wgpu::BindGroupLayout,
     picture: wgpu::BindGroupLayout,
+    near: wgpu::BindGroupLayout,
+    smooth: wgpu::BindGroupLayout,
 }
 
 /// What of the light's way a frame does anew.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Steps {
-    /// Whether something was found before, though for another shape or light.
-    pub warm: bool,
     /// Tries; none where nothing but the eye moved.
     pub tries: u32,
     /// Whether light is gathered towards an eye.
@@ -96,17 +109,23 @@ impl TransportStage {
             gpu::layout(device, label, wgpu::ShaderStages::COMPUTE, types)
         };
         let layouts = Layouts {
-            sites: layout("sites", &[UNIFORM_ARRAY, READ, READ, WRITE, WRITE, WRITE]),
-            source: layout("source", &[UNIFORM, UNIFORM, READ, READ, READ, READ, READ, WRITE, WRITE, WRITE]),
-            merge: layout("merge", &[UNIFORM_ARRAY, UNIFORM, READ, WRITE, WRITE]),
+            group: layout("group", &[UNIFORM, READ, READ, READ, READ, WRITE, WRITE, WRITE]),
+            sites: layout("sites", &[UNIFORM_ARRAY, READ, READ, WRITE, WRITE, WRITE, UNIFORM]),
+            source: layout("source", &[UNIFORM, UNIFORM, READ, READ, READ, READ, WRITE, WRITE, WRITE]),
+            merge: layout("merge", &[UNIFORM_ARRAY, UNIFORM, WRITE, WRITE, WRITE]),
             potential: layout(
                 "potential",
                 &[UNIFORM_ARRAY, READ, READ, WRITE, WRITE, WRITE, WRITE, UNIFORM, READ, READ],
             ),
-            returning: layout("returning", &[UNIFORM_ARRAY, UNIFORM, READ, READ, READ, READ, WRITE, WRITE]),
-            krylov: layout("krylov", &[UNIFORM, READ, READ, READ, WRITE, WRITE, WRITE, WRITE]),
-            layer: layout("layer", &[UNIFORM, READ, READ, READ, READ, READ, READ, WRITE, WRITE]),
-            picture: layout("picture", &[UNIFORM, UNIFORM, READ, READ, READ, READ, READ, WRITE]),
+            returning: layout(
+                "returning",
+                &[UNIFORM_ARRAY, UNIFORM, READ, READ, READ, READ, WRITE, WRITE, READ],
+            ),
+            krylov: layout("krylov", &[UNIFORM, READ, READ, READ, WRITE, WRITE, WRITE, WRITE, READ]),
+            layer: layout("layer", &[UNIFORM, READ, READ, READ, READ, READ, WRITE, WRITE]),
+            picture: layout("picture", &[UNIFORM, UNIFORM, READ, READ, READ, READ, WRITE]),
+            near: layout("near", &[UNIFORM, READ, READ, READ, READ, WRITE]),
+            smooth: layout("smooth", &[UNIFORM, READ, READ, READ, READ, READ, READ, READ, WRITE]),
         };
         let module = |shader| gpu::module(device, shader);
         let pipeline =
@@ -117,26 +136,31 @@ impl TransportStage {
         let returning = module(translume_shaders::RETURNING);
         let krylov = module(translume_shaders::KRYLOV);
         let layer = module(translume_shaders::LAYER);
-        let sum = |light: bool, surface: bool, below: bool| {
-            let constants = [("LIGHT", light), ("SURFACE", surface), ("BELOW", below)];
+        let sum = |light: bool, below: bool| {
+            let constants = [("LIGHT", light), ("BELOW", below)];
             let constants = constants.map(|(name, on)| (name, f64::from(u8::from(on))));
             ["inner", "leaf"].map(|entry| {
                 gpu::specialised_pipeline(device, &layouts.potential, &potential, entry, &constants)
             })
         };
         Self {
-            sites: ["from_texels", "from_clusters"].map(|entry| pipeline(&layouts.sites, &sites, entry)),
+            group: pipeline(&layouts.group, &module(translume_shaders::GROUP), "group"),
+            sites: ["from_discs", "from_clusters"].map(|entry| pipeline(&layouts.sites, &sites, entry)),
             enter: pipeline(&layouts.source, &module(translume_shaders::SOURCE), "enter"),
+            light_of_sites: pipeline(&layouts.merge, &merge, "light_of_sites"),
             merge_light: pipeline(&layouts.merge, &merge, "light"),
             merge_surface: pipeline(&layouts.merge, &merge, "surface"),
             begin: pipeline(&layouts.potential, &potential, "start"),
-            light: sum(true, false, false),
-            surface: sum(false, true, false),
-            below: sum(true, true, true),
+            light: sum(true, false),
+            surface: sum(false, false),
+            lit_below: sum(true, true),
+            sent_below: sum(false, true),
             forget: pipeline(&layouts.returning, &returning, "forget"),
-            leave: ["leave", "leave_found"].map(|entry| pipeline(&layouts.returning, &returning, entry)),
+            leave: pipeline(&layouts.returning, &returning, "leave"),
             merge_leaving: pipeline(&layouts.returning, &returning, "merge"),
-            charge: ["charge", "charge_found"].map(|entry| pipeline(&layouts.returning, &returning, entry)),
+            come_in: pipeline(&layouts.returning, &returning, "come_in"),
+            charge: pipeline(&layouts.returning, &returning, "charge"),
+            charge_found: pipeline(&layouts.returning, &returning, "charge_found"),
             krylov: Krylov {
                 measure: pipeline(&layouts.krylov, &krylov, "measure"),
                 settle_mean: pipeline(&layouts.krylov, &krylov, "settle_mean"),
@@ -155,6 +179,9 @@ impl TransportStage {
             diffuse: pipeline(&layouts.layer, &layer, "diffuse"),
             parabola: pipeline(&layouts.layer, &layer, "parabola"),
             gathered: pipeline(&layouts.picture, &module(translume_shaders::PICTURE), "gathered"),
+            near: pipeline(&layouts.near, &module(translume_shaders::NEAR), "near"),
+            strangers: pipeline(&layouts.smooth, &module(translume_shaders::STRANGERS), "strangers"),
+            smooth: pipeline(&layouts.smooth, &module(translume_shaders::SMOOTH), "smooth_out"),
             layouts,
         }
     }
@@ -164,22 +191,24 @@ impl TransportStage {
         if is_first { COLD } else { WARM }
     }
 
-    pub fn encode(&self, pass: &mut Pass<'_>, memory: &TransportMemory, tree: &Tree, steps: Steps) {
-        let frame = Recorder { stage: self, memory, tree };
-        let texels = tree.counts[0];
+    pub fn encode(&self, pass: &mut Pass<'_>, memory: &TransportMemory, steps: Steps) {
+        let frame = Recorder { stage: self, memory, tree: &memory.sites.tree };
         if steps.tries > 0 {
-            frame.up(pass, &memory.sites, |level| &self.sites[usize::from(level > 1)]);
+            frame.each(pass, &self.group, &memory.group);
+            frame.up(pass, &memory.discs, |level| &self.sites[usize::from(level > 1)]);
+            if memory.sites.level > 0 {
+                frame.each(pass, &self.near, &memory.near);
+            }
             frame.each(pass, &self.enter, &memory.source);
+            frame.each_of(pass, &self.light_of_sites, &memory.merge);
             frame.up(pass, &memory.merge, |_| &self.merge_light);
             frame.sum(pass, &self.light, &memory.given);
             let krylov = &self.krylov;
             frame.groups(pass, &krylov.measure);
             frame.one(pass, &krylov.settle_mean);
             frame.each(pass, &krylov.start, &memory.krylov);
-            if steps.warm {
-                frame.apply(pass);
-                frame.each(pass, &krylov.adopt, &memory.krylov);
-            }
+            frame.apply(pass);
+            frame.each(pass, &krylov.adopt, &memory.krylov);
             frame.minimise(pass);
             for _ in 0..steps.tries {
                 frame.apply(pass);
@@ -190,18 +219,25 @@ impl TransportStage {
                 frame.one(pass, &krylov.turn);
                 frame.minimise(pass);
             }
-            frame.charge(pass, 1);
             if steps.seen {
-                frame.sum(pass, &self.below, &memory.deeper);
+                frame.send(pass, &self.charge_found);
+                frame.sum(pass, &self.lit_below, &memory.lit_below);
+                frame.sum(pass, &self.sent_below, &memory.sent_below);
                 frame.each(pass, &self.parabola, &memory.layer);
             }
         }
         // Who is turned away from the eye, and who is not seen from one at all.
         frame.each(pass, &self.diffuse, &memory.layer);
         if steps.seen {
-            pass.set_pipeline(&self.gathered);
-            pass.set_bind_group(&memory.picture, &[]);
-            pass.dispatch(texels);
+            frame.each(pass, &self.gathered, &memory.picture);
+        }
+        pass.set_pipeline(&self.smooth);
+        pass.set_bind_group(&memory.smooth, &[]);
+        pass.dispatch(memory.sites.texels);
+        if memory.sites.level > 0 {
+            pass.set_pipeline(&self.strangers);
+            pass.set_bind_group(&memory.strangers, &[]);
+            pass.dispatch(memory.sites.texels);
         }
     }
 }
@@ -213,7 +249,7 @@ struct Recorder<'a> {
 }
 
 impl<'a> Recorder<'a> {
-    /// Every level above the texels in turn.
+    /// Every level above the sites in turn.
     fn up(
         &self,
         pass: &mut Pass<'_>,
@@ -227,14 +263,14 @@ impl<'a> Recorder<'a> {
         }
     }
 
-    /// Every texel.
+    /// Every site.
     fn each(&self, pass: &mut Pass<'_>, pipeline: &ComputePipeline, group: &wgpu::BindGroup) {
         pass.set_pipeline(pipeline);
         pass.set_bind_group(group, &[]);
         pass.dispatch(self.tree.counts[0]);
     }
 
-    /// The solver's sums over all texels.
+    /// The solver's sums over all sites.
     fn groups(&self, pass: &mut Pass<'_>, pipeline: &ComputePipeline) {
         pass.set_pipeline(pipeline);
         pass.set_bind_group(&self.memory.krylov, &[]);
@@ -249,8 +285,28 @@ impl<'a> Recorder<'a> {
 
     /// What the equation makes of the trial.
     fn apply(&self, pass: &mut Pass<'_>) {
-        self.charge(pass, 0);
-        self.sum(pass, &self.stage.surface, &self.memory.sent);
+        let (stage, group) = (self.stage, &self.memory.returning);
+        self.each_of(pass, &stage.forget, group);
+        for _ in 0..RETURNS {
+            self.each_of(pass, &stage.leave, group);
+            self.up(pass, group, |_| &stage.merge_leaving);
+            self.each_of(pass, &stage.come_in, group);
+        }
+        self.send(pass, &stage.charge);
+        self.sum(pass, &stage.surface, &self.memory.sent);
+    }
+
+    /// What the surface sends.
+    fn send(&self, pass: &mut Pass<'_>, charge: &ComputePipeline) {
+        self.each_of(pass, charge, &self.memory.returning);
+        self.up(pass, &self.memory.merge, |_| &self.stage.merge_surface);
+    }
+
+    /// Every site, in a module that knows levels, too.
+    fn each_of(&self, pass: &mut Pass<'_>, pipeline: &ComputePipeline, group: &wgpu::BindGroup) {
+        pass.set_pipeline(pipeline);
+        pass.set_bind_group(group, &[0]);
+        pass.dispatch(self.tree.counts[0]);
     }
 
     /// The least residual that the directions leave, and the next trial.
@@ -260,23 +316,6 @@ impl<'a> Recorder<'a> {
         self.one(pass, &krylov.weigh_residual);
         self.each(pass, &krylov.advance, &self.memory.krylov);
         self.one(pass, &krylov.give_up);
-    }
-
-    /// What the trial sends (0), or what was found (1).
-    fn charge(&self, pass: &mut Pass<'_>, which: usize) {
-        let (stage, memory) = (self.stage, self.memory);
-        let at_texels = |pass: &mut Pass<'_>, pipeline: &ComputePipeline| {
-            pass.set_pipeline(pipeline);
-            pass.set_bind_group(&memory.returning, &[0]);
-            pass.dispatch(self.tree.counts[0]);
-        };
-        at_texels(pass, &stage.forget);
-        for _ in 0..RETURNS {
-            at_texels(pass, &stage.leave[which]);
-            self.up(pass, &memory.returning, |_| &stage.merge_leaving);
-            at_texels(pass, &stage.charge[which]);
-        }
-        self.up(pass, &memory.merge, |_| &stage.merge_surface);
     }
 
     /// One traversal.
