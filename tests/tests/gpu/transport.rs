@@ -111,7 +111,7 @@ fn sites_stand_for_texels(seen_from: [f64; 3], bound: f64) -> Check {
     at_most("four texels to a site", apart(&coarse, &coarse.exitance(), &expected), bound)
 }
 
-/// BOUND
+/// Measured .7 %, and 14 % where light is taken to come from 10° beside.
 #[test]
 fn a_site_stands_for_its_texels() {
     holds(sites_stand_for_texels([0.48, 0.6, 0.64], 0.02));
