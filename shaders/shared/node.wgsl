@@ -22,7 +22,8 @@ fn extent_along(node: Node, direction: vec3f) -> f32 {
     return node.thickness * cosine + node.radius * sqrt(1.0 - cosine * cosine);
 }
 
-// A site is a square of unknown turn; the circle around it leaves no gaps.
-fn disc_reach(area: f32) -> f32 {
-    return sqrt(0.5 * area);
+// Square of how far from its middle a site is met: a square of unknown turn, where the circle around it leaves no gaps; of several texels, which are also
+// in a row, twice that.
+fn disc_reach_squared(area: f32) -> f32 {
+    return select(1.0, 2.0, transport.texels_per_site > 1u) * max(0.5 * area, transport.reach_squared);
 }

@@ -40,7 +40,7 @@ fn crossing(origin: vec3f, direction: vec3f, begin: f32, most: f32, side: f32, a
                 let offset = place.xyz - origin;
                 let t = dot(offset, normal) / cosine;
                 let beside = offset - direction * t;
-                if t > begin && t < best.t && dot(beside, beside) < max(0.5 * place.w, transport.reach_squared) { best = Crossing(t, node); }
+                if t > begin && t < best.t && dot(beside, beside) < disc_reach_squared(place.w) { best = Crossing(t, node); }
             }
         }
         let next = passed(transport.site_count, transport.top_level, Step(level, node));

@@ -32,7 +32,9 @@ fn group(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: v
         light += irradiance;
         tinted += irradiance * marked_tint(marks[k]);
     }
+    // Where normals cancel, any will do.
     if dot(normal, normal) < 1e-6 { normal = texel_normals[first].xyz; }
+    if dot(normal, normal) < 1e-6 { normal = vec3f(0.0, 1.0, 0.0); }
     site_positions[site] = vec4f(middle, area);
     site_normals[site] = vec4f(normal, 0.0);
     site_lights[site] = SiteLight(vec4f(light, 0.0), vec4f(select(vec3f(1.0), tinted / light, light > vec3f(0.0)), 0.0));

@@ -12,7 +12,7 @@
 // Rays meet a disc within its own half diagonal or that of a usual one.
 fn disc_node(index: u32) -> Node {
     let place = site_positions[index];
-    let reach = max(disc_reach(place.w), sqrt(transport.reach_squared));
+    let reach = sqrt(disc_reach_squared(place.w));
     return Node(place.xyz, reach, normalize(site_normals[index].xyz), 0.0, place.xyz, 0.0, 0.0, 1.0, 0.0, 0.0);
 }
 
