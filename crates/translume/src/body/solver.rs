@@ -95,11 +95,14 @@ impl Body {
 
     /// Bytes that the next frame's solver takes beyond what it has.
     pub(super) fn solver_growth(&self) -> u64 {
-        let demand = self.solver_demand().filter(|_| self.solver.memory.is_none());
-        demand.map_or(0, |demand| {
-            let sites = Sites::new(self.extent.texels, self.site_level());
-            stage::bytes(&sites) + ListSizes::new(&sites.tree, demand, &self.limits).bytes()
-        })
+        let Some(demand) = self.solver_demand() else { return 0 };
+        let sites = Sites::new(self.extent.texels, self.site_level());
+        let serves = |memory: &TransportMemory| memory.serves(demand, sites.level, &self.limits);
+        if self.solver.memory.as_ref().is_some_and(serves) {
+            return 0;
+        }
+        let needed = stage::bytes(&sites) + ListSizes::new(&sites.tree, demand, &self.limits).bytes();
+        needed.saturating_sub(self.solver.bytes())
     }
 
     /// Makes the solver ready for the frame, and finds out what it has to do.
