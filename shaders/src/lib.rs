@@ -177,6 +177,7 @@ pub const RETURNING: Shader = transport!(
     "shared/shape.wgsl",
     "shared/level.wgsl",
     "shared/node.wgsl",
+    "shared/surroundings.wgsl",
     "transport/returning.wgsl"
 );
 /// The boundary equation's next try.

@@ -12,6 +12,7 @@
 @group(0) @binding(6) var<storage, read_write> leaving: array<vec4f>;
 @group(0) @binding(7) var<storage, read_write> charges: array<Charge>;
 @group(0) @binding(8) var<storage, read> nodes: array<Node>;
+@group(0) @binding(9) var<storage, read> surroundings: array<Surroundings>;
 
 // Few rays tell how much is hidden: that may be too much at one site and too little at the next, but no more than so many times what is.
 const MOST_SCALE: f32 = 4.0;
@@ -89,10 +90,25 @@ fn send(index: u32, fluence: vec3f, comes_in: vec3f) {
         Charge(vec4f(power, 0.0), moment * shape.normal.x, moment * shape.normal.y, moment * shape.normal.z);
 }
 
+// Few rays tell: those of the sites around that face the same way, too.
+fn hidden_around(index: u32) -> f32 {
+    if transport.texels_per_site == 1u { return entered[index].w; }
+    var sum = 0.0;
+    var weights = 0.0;
+    for (var k = 0u; k < surroundings[index].count; k++) {
+        let site = surroundings[index].sites[k];
+        let facing = max(dot(shapes[site].normal, shapes[index].normal), 0.0);
+        let weight = facing * facing;
+        sum += weight * entered[site].w;
+        weights += weight;
+    }
+    return select(entered[index].w, sum / weights, weights > 0.0);
+}
+
 // Of what leaves elsewhere, what falls on a site, W/m², and in w the share of its sky from which that comes. Form factors know no obstacles; they are
 // scaled down to what the site really sees of the body.
 fn returning(index: u32, normal: vec3f) -> vec4f {
-    let hidden = entered[index].w;
+    let hidden = hidden_around(index);
     if hidden == 0.0 { return vec4f(0.0); }
     let receiver = bounds[index].xyz;
     var sum = vec3f(0.0);

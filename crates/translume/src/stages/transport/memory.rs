@@ -182,6 +182,7 @@ impl TransportMemory {
                     all(&leaving),
                     all(&charges),
                     all(&nodes),
+                    all(&surroundings),
                 ],
             ),
             krylov: bind(

@@ -119,7 +119,7 @@ impl TransportStage {
             ),
             returning: layout(
                 "returning",
-                &[UNIFORM_ARRAY, UNIFORM, READ, READ, READ, READ, WRITE, WRITE, READ],
+                &[UNIFORM_ARRAY, UNIFORM, READ, READ, READ, READ, WRITE, WRITE, READ, READ],
             ),
             krylov: layout("krylov", &[UNIFORM, READ, READ, READ, WRITE, WRITE, WRITE, WRITE, READ]),
             layer: layout("layer", &[UNIFORM, READ, READ, READ, READ, READ, WRITE, WRITE]),
