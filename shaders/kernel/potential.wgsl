@@ -312,7 +312,7 @@ fn sent(c: Charge, o: Places, shape: Shape, line: Line) -> vec4f {
     var sum = of_point;
     // A loop in place of a branch, as above.
     for (var k = select(1u, 0u, any(near)); k < 1u; k++) {
-        sum = select(of_point, of_disc(c, o, r2, a2, shape.normal * inverseSqrt(max(dot(shape.normal, shape.normal), 1e-20))), near);
+        sum = select(of_point, of_disc(c, o, r2, a2, safe_normalize(shape.normal, vec3f(0.0))), near);
     }
     return sum;
 }

@@ -73,6 +73,11 @@ fn layer_depth(thickness: f32) -> vec4f {
     return vec4f(depth, dot(depth, vec3f(1.0 / 3.0)));
 }
 
+// How much less leaves than the boundary's share of φ, per light that comes in.
+fn mirrored() -> vec3f {
+    return 4.0 * transport.robin.rgb - 1.0;
+}
+
 fn luminance(light: vec3f) -> f32 {
     return dot(light, vec3f(1.0 / 3.0));
 }

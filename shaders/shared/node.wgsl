@@ -22,6 +22,11 @@ fn extent_along(node: Node, direction: vec3f) -> f32 {
     return node.thickness * cosine + node.radius * sqrt(1.0 - cosine * cosine);
 }
 
+// Where the surface is stretched sites are wider, and those at a rim hold less than what lies around theirs.
+fn site_width(area: f32) -> f32 {
+    return sqrt(max(area, 2.0 * transport.reach_squared));
+}
+
 // Square of how far from its middle a site is met: a square of unknown turn, where the circle around it leaves no gaps; of several texels, which are also
 // in a row, twice that.
 fn disc_reach_squared(area: f32) -> f32 {

@@ -5,5 +5,5 @@ struct Surroundings {
     count: u32,
     // How far from a texel they count, mm.
     reach: f32,
-    sites: array<u32, 30>,
+    sites: array<u32, MOST_NEAR>,
 }

@@ -54,7 +54,7 @@ macro_rules! composite {
             $name,
             "shared/fresnel.wgsl",
             "shared/vector.wgsl",
-    "shared/lights.wgsl",
+            "shared/lights.wgsl",
             "shared/area_light.wgsl",
             "shared/environment.wgsl",
             "shared/shadow_map.wgsl",
@@ -128,14 +128,7 @@ pub const DUAL_ORIENTED: Shader = scatter!(
     "dual.wgsl"
 );
 /// Texels → sites, fewer of them, for the boundary solver.
-pub const GROUP: Shader = shader!(
-    "group",
-    "shared/dispatch.wgsl",
-    "shared/cluster.wgsl",
-    "shared/grouping.wgsl",
-    "shared/site_light.wgsl",
-    "transport/group.wgsl"
-);
+pub const GROUP: Shader = transport!("group", "shared/site_light.wgsl", "transport/group.wgsl");
 /// Sites → their tree of discs.
 pub const SITES: Shader = transport!(
     "sites",
@@ -163,6 +156,7 @@ pub const MERGE: Shader =
 /// Both → fluence, with groups of texels at both ends.
 pub const POTENTIAL: Shader = transport!(
     "potential",
+    "shared/vector.wgsl",
     "shared/shape.wgsl",
     "shared/kernel_table.wgsl",
     "shared/term.wgsl",
@@ -196,13 +190,8 @@ pub const PICTURE: Shader = transport!(
     "transport/picture.wgsl"
 );
 /// Sites → those around each.
-pub const NEAR: Shader = transport!(
-    "near",
-    "shared/shape.wgsl",
-    "shared/node.wgsl",
-    "shared/surroundings.wgsl",
-    "transport/near.wgsl"
-);
+pub const NEAR: Shader =
+    transport!("near", "shared/node.wgsl", "shared/surroundings.wgsl", "transport/near.wgsl");
 /// Radiant exitance of sites → of texels.
 pub const SMOOTH: Shader = transport!(
     "smooth",

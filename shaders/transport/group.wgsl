@@ -1,6 +1,6 @@
 // Group: texels → sites, which the boundary solver knows alone: 4^l texels each, so that its work follows how far light wanders, not the texture.
 
-@group(0) @binding(0) var<uniform> grouping: Grouping;
+@group(0) @binding(0) var<uniform> transport: Transport;
 @group(0) @binding(1) var<storage, read> texel_positions: array<vec4f>;
 @group(0) @binding(2) var<storage, read> texel_normals: array<vec4f>;
 @group(0) @binding(3) var<storage, read> texel_irradiance: array<vec4f>;
@@ -14,9 +14,9 @@
 @compute @workgroup_size(64)
 fn group(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_index) local: u32) {
     let site = item_index(group, groups, local);
-    if site >= grouping.site_count { return; }
-    let first = site * grouping.texels_per_site;
-    let last = min(first + grouping.texels_per_site, grouping.texel_count);
+    if site >= transport.site_count { return; }
+    let first = site * transport.texels_per_site;
+    let last = min(first + transport.texels_per_site, transport.texel_count);
     var area = 0.0;
     for (var k = first; k < last; k++) { area += texel_positions[k].w; }
     var middle = vec3f(0.0);

@@ -18,7 +18,7 @@ fn diffuse(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups:
     if index >= transport.site_count { return; }
     let robin = transport.robin.rgb;
     let comes_in = fluence[2u * transport.site_count + index].rgb;
-    let leaves = robin * fluence[transport.site_count + index].rgb - (4.0 * robin - 1.0) * comes_in;
+    let leaves = robin * fluence[transport.site_count + index].rgb - mirrored() * comes_in;
     site_exitance[index] = vec4f(max(leaves, vec3f(0.0)), 0.0);
 }
 

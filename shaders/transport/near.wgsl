@@ -4,8 +4,7 @@
 @group(0) @binding(1) var<storage, read> nodes: array<Node>;
 @group(0) @binding(2) var<storage, read> site_positions: array<vec4f>;
 @group(0) @binding(3) var<storage, read> site_normals: array<vec4f>;
-@group(0) @binding(4) var<storage, read> shapes: array<Shape>;
-@group(0) @binding(5) var<storage, read_write> surroundings: array<Surroundings>;
+@group(0) @binding(4) var<storage, read_write> surroundings: array<Surroundings>;
 
 // Sites count so far from a texel, in widths of a site, and a texel is no further from its own than this.
 const REACH: f32 = 1.3;
@@ -17,9 +16,7 @@ fn near(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: ve
     if site >= transport.site_count { return; }
     let position = site_positions[site].xyz;
     let normal = site_normals[site].xyz;
-    // Where the surface is stretched sites are wider, and those at a rim hold less than what lies around theirs.
-    let around = transport.sources[0][1] + site / 4u;
-    let width = sqrt(max(shapes[site].area, 2.0 * transport.reach_squared));
+    let width = site_width(site_positions[site].w);
     let reach = (REACH + ASIDE) * width;
     var count = 0u;
     var level = transport.top_level;

@@ -40,11 +40,6 @@ fn leave(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: v
     leaving[index] = vec4f(shapes[index].area * exitance, 0.0);
 }
 
-// How much less leaves than the boundary's share of φ, per light that comes in.
-fn mirrored() -> vec3f {
-    return 4.0 * transport.robin.rgb - 1.0;
-}
-
 @compute @workgroup_size(64)
 fn merge(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_index) local: u32) {
     let node = item_index(group, groups, local);
@@ -56,7 +51,7 @@ fn merge(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: v
     leaving[level.source_offset + node] = sum;
 }
 
-// Were Γ everywhere what it is here, this would be Γ at once: two walks then leave what six would by themselves.
+// Were Γ everywhere what it is here, this would be Γ at once, so few walks do.
 @compute @workgroup_size(64)
 fn come_in(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_index) local: u32) {
     let index = item_index(group, groups, local);

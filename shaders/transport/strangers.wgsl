@@ -19,7 +19,7 @@ fn strangers(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) group
     if texel >= transport.texel_count { return; }
     if exitance[texel].w != STRANGE { return; }
     let own = texel / transport.texels_per_site;
-    let reach = REACH * sqrt(max(site_positions[own].w, 2.0 * transport.reach_squared));
+    let reach = REACH * site_width(site_positions[own].w);
     var plane = plane_at(texel_positions[texel].xyz, texel_normals[texel].xyz, reach);
     var level = transport.top_level;
     var node = 0u;

@@ -311,16 +311,6 @@ pub(crate) struct TransportLayout {
     pub sources: [[u32; 4]; 4],
 }
 
-/// How texels make up sites.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
-pub(crate) struct GroupingLayout {
-    pub texel_count: u32,
-    pub site_count: u32,
-    pub texels_per_site: u32,
-    pub padding: u32,
-}
-
 /// The sites around one.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]

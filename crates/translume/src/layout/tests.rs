@@ -188,7 +188,6 @@ fn rust_and_wgsl_agree() {
             sources
         ]
     );
-    check!(GROUP, "Grouping", GroupingLayout, [texel_count, site_count, texels_per_site]);
     check!(NEAR, "Surroundings", SurroundingsLayout, [count, reach, sites]);
     check!(GROUP, "SiteLight", SiteLightLayout, [irradiance, tint]);
     check!(POTENTIAL, "Shape", ShapeLayout, [normal, spread, moments, area, turns]);

@@ -6,8 +6,8 @@ use crate::buffers::Buffers;
 use crate::gpu::{self, UNIFORM_STRIDE};
 use crate::kernel_table::KernelTableLayout;
 use crate::layout::{
-    ChargeLayout, DualLayout, GroupingLayout, LevelLayout, NodeLayout, ParabolaLayout, ScatterLayout,
-    ShapeLayout, SiteLightLayout, StateLayout, StrataLayout, SurroundingsLayout, TermLayout, TransportLayout,
+    ChargeLayout, DualLayout, LevelLayout, NodeLayout, ParabolaLayout, ScatterLayout, ShapeLayout,
+    SiteLightLayout, StateLayout, StrataLayout, SurroundingsLayout, TermLayout, TransportLayout,
 };
 use crate::stages::cluster::Tree;
 use crate::stages::scatter::dual::{Demand, Lists, Plan};
@@ -73,7 +73,6 @@ impl TransportMemory {
             gpu::uniform_buffer(device, "potential", UNIFORM_STRIDE * u64::from(plan.start_level + 1));
         let sizes = Sizes::new(&sites);
         let storage = |label, bytes: u64| gpu::buffer(device, label, bytes);
-        let grouping = gpu::buffer_with(device, "grouping", wgpu::BufferUsages::UNIFORM, &[sites.grouping()]);
         let site_levels =
             gpu::buffer_with(device, "levels of sites", wgpu::BufferUsages::UNIFORM, &tree.uniforms());
         let [site_positions, site_normals, site_exitance] =
@@ -117,12 +116,26 @@ impl TransportMemory {
             ];
             bind(label, &stage.layouts.potential, &resources)
         };
+        let to_texels = |label, known: &wgpu::Buffer| {
+            let resources = [
+                all(&uniform),
+                all(known),
+                all(&site_positions),
+                all(&site_normals),
+                all(&site_exitance),
+                all(&buffers.texel_positions),
+                all(&buffers.texel_normals),
+                all(&buffers.marks),
+                all(&buffers.exitance),
+            ];
+            bind(label, &stage.layouts.smooth, &resources)
+        };
         Self {
             group: bind(
                 "group",
                 &stage.layouts.group,
                 &[
-                    all(&grouping),
+                    all(&uniform),
                     all(&buffers.texel_positions),
                     all(&buffers.texel_normals),
                     all(&buffers.irradiance),
@@ -230,45 +243,10 @@ impl TransportMemory {
             near: bind(
                 "near",
                 &stage.layouts.near,
-                &[
-                    all(&uniform),
-                    all(&nodes),
-                    all(&site_positions),
-                    all(&site_normals),
-                    all(&shapes),
-                    all(&surroundings),
-                ],
+                &[all(&uniform), all(&nodes), all(&site_positions), all(&site_normals), all(&surroundings)],
             ),
-            smooth: bind(
-                "smooth",
-                &stage.layouts.smooth,
-                &[
-                    all(&uniform),
-                    all(&surroundings),
-                    all(&site_positions),
-                    all(&site_normals),
-                    all(&site_exitance),
-                    all(&buffers.texel_positions),
-                    all(&buffers.texel_normals),
-                    all(&buffers.marks),
-                    all(&buffers.exitance),
-                ],
-            ),
-            strangers: bind(
-                "strangers",
-                &stage.layouts.smooth,
-                &[
-                    all(&uniform),
-                    all(&nodes),
-                    all(&site_positions),
-                    all(&site_normals),
-                    all(&site_exitance),
-                    all(&buffers.texel_positions),
-                    all(&buffers.texel_normals),
-                    all(&buffers.marks),
-                    all(&buffers.exitance),
-                ],
-            ),
+            smooth: to_texels("smooth", &surroundings),
+            strangers: to_texels("strangers", &nodes),
             bytes: bytes(&sites),
             sites,
             uniform,
@@ -401,7 +379,7 @@ pub(crate) fn bytes(sites: &Sites) -> u64 {
         vectors,
     } = Sizes::new(sites);
     let tree = bounds + nodes + shapes + charges + strata;
-    let levels = UNIFORM_STRIDE * u64::from(sites.tree.top_level()) + size_of::<GroupingLayout>() as u64;
+    let levels = UNIFORM_STRIDE * u64::from(sites.tree.top_level());
     tree + levels + leaving + directions + partial + parabolas + lights + surroundings + 12 * vectors
 }
 

@@ -124,7 +124,7 @@ impl TransportStage {
             krylov: layout("krylov", &[UNIFORM, READ, READ, READ, WRITE, WRITE, WRITE, WRITE, READ]),
             layer: layout("layer", &[UNIFORM, READ, READ, READ, READ, READ, WRITE, WRITE]),
             picture: layout("picture", &[UNIFORM, UNIFORM, READ, READ, READ, READ, WRITE]),
-            near: layout("near", &[UNIFORM, READ, READ, READ, READ, WRITE]),
+            near: layout("near", &[UNIFORM, READ, READ, READ, WRITE]),
             smooth: layout("smooth", &[UNIFORM, READ, READ, READ, READ, READ, READ, READ, WRITE]),
         };
         let module = |shader| gpu::module(device, shader);
@@ -231,13 +231,9 @@ impl TransportStage {
         if steps.seen {
             frame.each(pass, &self.gathered, &memory.picture);
         }
-        pass.set_pipeline(&self.smooth);
-        pass.set_bind_group(&memory.smooth, &[]);
-        pass.dispatch(memory.sites.texels);
+        frame.each_texel(pass, &self.smooth, &memory.smooth);
         if memory.sites.level > 0 {
-            pass.set_pipeline(&self.strangers);
-            pass.set_bind_group(&memory.strangers, &[]);
-            pass.dispatch(memory.sites.texels);
+            frame.each_texel(pass, &self.strangers, &memory.strangers);
         }
     }
 }
@@ -268,6 +264,12 @@ impl<'a> Recorder<'a> {
         pass.set_pipeline(pipeline);
         pass.set_bind_group(group, &[]);
         pass.dispatch(self.tree.counts[0]);
+    }
+
+    fn each_texel(&self, pass: &mut Pass<'_>, pipeline: &ComputePipeline, group: &wgpu::BindGroup) {
+        pass.set_pipeline(pipeline);
+        pass.set_bind_group(group, &[]);
+        pass.dispatch(self.memory.sites.texels);
     }
 
     /// The solver's sums over all sites.

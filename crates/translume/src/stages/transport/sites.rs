@@ -1,6 +1,5 @@
 //! The sites of a body: what the boundary solver has in place of texels.
 
-use crate::layout::GroupingLayout;
 use crate::stages::cluster::Tree;
 
 /// Nodes of a level of the texels' tree, and the tree above them.
@@ -21,15 +20,6 @@ impl Sites {
 
     pub fn texels_per_site(&self) -> u32 {
         1 << (2 * self.level)
-    }
-
-    pub fn grouping(&self) -> GroupingLayout {
-        GroupingLayout {
-            texel_count: self.texels,
-            site_count: self.tree.counts[0],
-            texels_per_site: self.texels_per_site(),
-            padding: 0,
-        }
     }
 }
 
