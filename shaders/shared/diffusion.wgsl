@@ -11,8 +11,8 @@ struct Transport {
     decay: vec4f,
     // What leaves per fluence at the surface.
     robin: vec4f,
-    // How much single scattering counts.
-    boost: vec4f,
+    // What diffusion lacks of light that scatters again, over what scattered once deep inside.
+    shortfall: vec4f,
     site_count: u32,
     top_level: u32,
     // Index of refraction, inside over outside.

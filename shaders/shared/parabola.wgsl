@@ -16,3 +16,10 @@ struct Parabola {
     light: vec3f,
     padding1: f32,
 }
+
+// How much is left at a depth of what light that enters leaves behind at the surface: e^−σ_t z/μ₀, and 3 E₄(σ_t z) of an even sky, by two exponentials
+// within .01 down to a mean free path.
+fn left_behind(cosine: f32, around: f32, depth: vec3f) -> vec3f {
+    let x = transport.extinction.rgb * depth;
+    return mix(exp(-x / max(cosine, 0.05)), 0.5 * (exp(-0.9 * x) + exp(-2.1 * x)), around);
+}

@@ -148,6 +148,7 @@ pub const SOURCE: Shader = transport!(
     "shared/node.wgsl",
     "shared/ray.wgsl",
     "shared/site_light.wgsl",
+    "shared/stratum.wgsl",
     "transport/source.wgsl"
 );
 /// What texels send, summed up their tree.
@@ -177,8 +178,13 @@ pub const RETURNING: Shader = transport!(
 /// The boundary equation's next try.
 pub const KRYLOV: Shader = transport!("krylov", "shared/shape.wgsl", "transport/krylov.wgsl");
 /// Fluence → radiant exitance.
-pub const LAYER: Shader =
-    transport!("layer", "shared/shape.wgsl", "shared/parabola.wgsl", "transport/layer.wgsl");
+pub const LAYER: Shader = transport!(
+    "layer",
+    "shared/shape.wgsl",
+    "shared/parabola.wgsl",
+    "shared/stratum.wgsl",
+    "transport/layer.wgsl"
+);
 /// The same as it is seen from the eye.
 pub const PICTURE: Shader = transport!(
     "picture",

@@ -11,6 +11,9 @@
 @group(0) @binding(6) var<storage, read_write> parabolas: array<Parabola>;
 @group(0) @binding(7) var<storage, read_write> site_exitance: array<vec4f>;
 
+// ∫ 2 E₂(z') |z − z'| dz' under an even sky, less the mean distance from its three sheets, at the depth of the value below the surface; mean free paths.
+const SKY_SPREAD: f32 = 0.037;
+
 // What leaves by the diffuse law, the same in all directions inside.
 @compute @workgroup_size(64)
 fn diffuse(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_index) local: u32) {
@@ -41,11 +44,37 @@ fn parabola(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups
     own.surface = fluence[transport.site_count + index].rgb + beam;
     let comes_in = fluence[2u * transport.site_count + index].rgb;
     let flux = transport.robin.rgb * (fluence[transport.site_count + index].rgb - 4.0 * comes_in);
-    let under = (lit_below[index].rgb - sent_below[index].rgb) / clamp(sent_below[index].w, 0.2, 1.2);
+    var under = (lit_below[index].rgb - sent_below[index].rgb) / clamp(sent_below[index].w, 0.2, 1.2);
     let slope = flux / transport.diffusion.rgb - beam * rate;
-    let rise = under + beam * exp(-rate * depth) - own.surface;
+    under -= spread_out(source, light, thickness, depth);
+    let rise = under + beam * left_behind(source.cosine, own.around, depth) - own.surface;
     let thin = depth * transport.extinction.rgb <= vec3f(1e-3);
     own.slope = select(slope, vec3f(0.0), thin);
     own.curve = select((rise / max(depth, vec3f(1e-20)) - slope) / max(depth, vec3f(1e-20)), vec3f(0.0), thin);
     parabolas[index] = own;
+}
+
+// How much less than under the sheets that stand for them there is under strata of light, which are spread out: half of how much further they are on the
+// mean, over D. Only those of the site itself are near enough to tell.
+fn spread_out(source: Strata, light: vec3f, thickness: f32, depth: vec3f) -> vec3f {
+    let extinction = transport.extinction.rgb;
+    let deep = clamp(source.cosine, 0.05, 1.0);
+    let end = extinction * thickness / deep;
+    let share = 1.0 - exp(-min(end, vec3f(80.0)));
+    let fold = deep / extinction;
+    var sum = vec3f(0.0);
+    for (var k = 0u; k < 3u; k++) {
+        let own = stratum(end, share, k);
+        let sheet = deep * source.ways[k].rgb;
+        let shift = fold * own.mean - sheet;
+        let begin = fold * own.begin - shift;
+        let to = fold * own.to - shift;
+        let above = max(depth - begin, vec3f(0.0)) / fold;
+        let away = 2.0 * fold * (above - (1.0 - exp(-above))) / max(1.0 - exp(-(own.to - own.begin)), vec3f(1e-6)) + sheet - depth;
+        sum += select(vec3f(0.0), away - abs(depth - sheet), (depth > begin) & (depth < to));
+    }
+    let around = source.ways[0].w;
+    let optical = depth * extinction / LAYER;
+    let away = mix(sum / 3.0, SKY_SPREAD * optical * optical / extinction, around);
+    return transport.albedo.rgb * light * share * 0.5 * away / transport.diffusion.rgb;
 }

@@ -28,7 +28,7 @@ fn fluence_along(p: Parabola, cosine: f32, s: vec3f, chord: f32) -> vec3f {
     let shifted = depth - hopf_shift(depth * transport.extinction.rgb) / transport.extinction.rgb;
     let rate = transport.extinction.rgb / max(p.cosine, 0.05);
     let beam = transport.albedo.rgb * p.light / (transport.diffusion.rgb * rate);
-    return p.surface + shifted * (p.slope + shifted * p.curve) - beam * exp(-rate * depth);
+    return p.surface + shifted * (p.slope + shifted * p.curve) - beam * left_behind(p.cosine, p.around, depth);
 }
 
 // As seen from the eye: what leaves if all that leaves were as bright as what goes there.
@@ -46,33 +46,57 @@ fn gathered(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups
     let width = sqrt(place.w);
     let far = first_crossing(place.xyz, direction, 0.1 * width, 1.0);
     let chord = max(far.t, 1e-6);
-    let own = parabolas[index];
-    var radiance = many(own, far, cosine, chord, direction);
-    radiance += transport.boost.rgb * once(own, place.xyz, direction, cosine, chord, width);
+    var sight: Sight;
+    sight.own = parabolas[index];
+    sight.other = sight.own;
+    sight.cosine = cosine;
+    sight.there = cosine;
+    sight.chord = chord;
+    sight.ends = far.site != NO_SITE;
+    if sight.ends {
+        sight.other = parabolas[far.site];
+        sight.there = max(dot(normalize(site_normals[far.site].xyz), direction), GRAZING);
+    }
+    let radiance = many(sight) + once(sight, place.xyz, direction, width);
     site_exitance[index] = vec4f(max(PI * radiance, vec3f(0.0)), 0.0);
 }
 
-// Scattered more than once.
-fn many(own: Parabola, far: Crossing, cosine: f32, chord: f32, direction: vec3f) -> vec3f {
+// A ray of view inside: from the site that is seen to the one at its other end, with the cosines there.
+struct Sight {
+    own: Parabola,
+    other: Parabola,
+    cosine: f32,
+    there: f32,
+    // mm.
+    chord: f32,
+    // Whether the other end is known.
+    ends: bool,
+}
+
+// How far the surface is from a place along a ray of view, mm.
+fn depth_at(sight: Sight, s: f32) -> f32 {
+    let near = depth_along(sight.own.thickness, sight.cosine, vec3f(s), sight.chord).x;
+    let far = depth_along(sight.other.thickness, sight.there, vec3f(sight.chord - s), sight.chord).x;
+    return select(near, min(near, far), sight.ends);
+}
+
+// Scattered more than once, as diffusion has it.
+fn many(sight: Sight) -> vec3f {
     let extinction = transport.extinction.rgb;
+    let chord = sight.chord;
+    let own = sight.own;
+    let other = sight.other;
     let share = 1.0 - exp(-min(extinction * chord, vec3f(80.0)));
-    var other = own;
-    var there = cosine;
-    let ends = far.site != NO_SITE;
-    if ends {
-        other = parabolas[far.site];
-        there = max(dot(normalize(site_normals[far.site].xyz), direction), GRAZING);
-    }
     let least = 1e-3 * max(max(own.surface, other.surface), vec3f(1e-30));
     var sum = vec3f(0.0);
     for (var k = 0u; k < STEPS; k++) {
         let part = (f32(k) + 0.5) / f32(STEPS);
         let s = min(-log(1.0 - part * share) / extinction, vec3f(chord));
-        var value = fluence_along(own, cosine, s, chord);
-        if ends {
+        var value = fluence_along(own, sight.cosine, s, chord);
+        if sight.ends {
             var y = s / chord;
             y = y * y * (3.0 - 2.0 * y);
-            let back = fluence_along(other, there, vec3f(chord) - s, chord);
+            let back = fluence_along(other, sight.there, vec3f(chord) - s, chord);
             value = exp(log(max(value, least)) * (1.0 - y) + log(max(back, least)) * y);
         }
         sum += value;
@@ -84,9 +108,10 @@ fn many(own: Parabola, far: Crossing, cosine: f32, chord: f32, direction: vec3f)
 const PLACES: u32 = 6u;
 const SPACING: array<f32, 6> = array<f32, 6>(0.0, 0.25, 0.65, 1.3, 2.5, 5.0);
 
-// Scattered once.
-fn once(own: Parabola, position: vec3f, direction: vec3f, cosine: f32, chord: f32, width: f32) -> vec3f {
+// Scattered once, and what diffusion lacks of light that scatters again: none where the first place is at the surface, as in `shortfall.rs`.
+fn once(sight: Sight, position: vec3f, direction: vec3f, width: f32) -> vec3f {
     let extinction = transport.extinction.rgb;
+    let chord = sight.chord;
     let longest = 1.0 / min(extinction.x, min(extinction.y, extinction.z));
     var sum = vec3f(0.0);
     for (var k = 0u; k < lighting.light_count; k++) {
@@ -94,25 +119,35 @@ fn once(own: Parabola, position: vec3f, direction: vec3f, cosine: f32, chord: f3
         var before = vec3f(0.0);
         var way = 0.0;
         var optical = 0.0;
+        var depth = 0.0;
         for (var place = 0u; place < PLACES; place++) {
             let s = min(SPACING[place] * longest, chord);
             let at = min(max(s, 0.05 * width), 0.5 * (s + chord));
-            let found = arriving_at(k, position + direction * at, width);
+            var found = arriving_at(k, position + direction * at, width);
+            if place == 0u && found.is_here { found.way = 0.0; }
+            let deep = depth_at(sight, s);
             if place > 0u {
-                let behind = extinction * optical;
-                let thickness = extinction * (s + found.way - optical);
-                let near = abs(thickness) < vec3f(1e-3);
-                let share = select((1.0 - exp(-max(thickness, vec3f(-60.0)))) / thickness, vec3f(1.0), near);
-                sum += 0.5 * (before + found.light) * extinction * (s - way) * exp(-min(behind, vec3f(80.0))) * share;
+                let begins = extinction * optical;
+                let passes = extinction * (s + found.way - optical);
+                let shallow = transmitted(begins + extinction * depth, passes + extinction * (deep - depth));
+                let again = transport.shortfall.rgb * (transmitted(begins, passes) - shallow);
+                sum += 0.5 * (before + found.light) * extinction * (s - way) * (transmitted(begins, passes) + again);
             }
             before = found.light;
             way = s;
             optical = s + found.way;
+            depth = deep;
         }
         // What is left goes on as it was.
-        if way < chord { sum += before * exp(-min(extinction * optical, vec3f(80.0))) * 0.5; }
+        if way < chord { sum += before * exp(-min(extinction * optical, vec3f(80.0))) * 0.5 * (1.0 + transport.shortfall.rgb); }
     }
-    return transport.albedo.rgb / (4.0 * PI) * (sum + around(own, cosine, chord));
+    return transport.albedo.rgb / (4.0 * PI) * (sum + around(sight));
+}
+
+// Mean of what is left over a way that begins and passes through so much.
+fn transmitted(begins: vec3f, passes: vec3f) -> vec3f {
+    let x = clamp(passes, vec3f(-60.0), vec3f(80.0));
+    return exp(-min(begins, vec3f(80.0))) * select((1.0 - exp(-x)) / x, vec3f(1.0), abs(x) < vec3f(1e-3));
 }
 
 struct Arriving {
@@ -120,6 +155,8 @@ struct Arriving {
     light: vec3f,
     // How much of the way from the light is inside, mm.
     way: f32,
+    // Whether light enters by the surface that is seen.
+    is_here: bool,
 }
 
 // Of a light at a place inside, as if nothing were used up on the way.
@@ -128,24 +165,27 @@ fn arriving_at(index: u32, position: vec3f, width: f32) -> Arriving {
     var far = FAR;
     if lighting.lights[index].kind == POINT { far = length(lighting.lights[index].vector - position); }
     let entry = crossing(position, comes.to_light, 0.0, far, 1.0, false);
-    if entry.site == NO_SITE { return Arriving(vec3f(0.0), 0.0); }
+    if entry.site == NO_SITE { return Arriving(vec3f(0.0), 0.0, false); }
     let at = site_positions[entry.site].xyz;
     let is_dark = any(at < lighting.lights[index].region_low) || any(at > lighting.lights[index].region_high);
-    return Arriving(select(comes.strength * parabolas[entry.site].open, vec3f(0.0), is_dark), entry.t);
+    return Arriving(select(comes.strength * parabolas[entry.site].open, vec3f(0.0), is_dark), entry.t, entry.t < width);
 }
 
 // Of an even sky, used up along a ray of view.
-fn around(own: Parabola, cosine: f32, chord: f32) -> vec3f {
+fn around(sight: Sight) -> vec3f {
+    let own = sight.own;
     if own.around <= 0.0 { return vec3f(0.0); }
     let extinction = transport.extinction.rgb;
-    let share = 1.0 - exp(-min(extinction * chord, vec3f(80.0)));
+    let share = 1.0 - exp(-min(extinction * sight.chord, vec3f(80.0)));
     var sum = vec3f(0.0);
     for (var k = 0u; k < STEPS; k++) {
         let part = (f32(k) + 0.5) / f32(STEPS);
-        let s = min(-log(1.0 - part * share) / extinction, vec3f(chord));
+        let s = min(-log(1.0 - part * share) / extinction, vec3f(sight.chord));
+        let deep = vec3f(depth_at(sight, s.x), depth_at(sight, s.y), depth_at(sight, s.z));
+        let again = 1.0 + transport.shortfall.rgb * (1.0 - exp(-extinction * deep));
         // Over a plane: 2 E · E₂(σ_t z), by a fit of the exponential integral within 4 % down to a hundredth.
-        let x = extinction * depth_along(own.thickness, cosine, s, chord);
-        sum += exp(-1.2 * x) / (1.0 + 1.028 * pow(max(x, vec3f(1e-12)), vec3f(0.655)));
+        let x = extinction * depth_along(own.thickness, sight.cosine, s, sight.chord);
+        sum += again * exp(-1.2 * x) / (1.0 + 1.028 * pow(max(x, vec3f(1e-12)), vec3f(0.655)));
     }
     return own.around * own.light * 2.0 * share * sum / f32(STEPS);
 }

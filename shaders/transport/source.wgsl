@@ -87,7 +87,7 @@ fn enter(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: v
     let end = transport.extinction.rgb * chord;
     let share = 1.0 - exp(-min(end, vec3f(80.0)));
     for (var k = 0u; k < 3u; k++) {
-        let way = stratum(end, share, k) / transport.extinction.rgb;
+        let way = stratum(end, share, k).mean / transport.extinction.rgb;
         let depth = deep * way;
         // Under a curved surface light that went aside is less deep; and depths are Hopf's.
         let lifted = depth - clamp(bend * spread_out * way * way, vec3f(0.0), 0.5 * depth);
@@ -103,15 +103,6 @@ fn enter(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: v
     entered[index] = vec4f(light, hidden_sky(index, position, normal, width));
     let open = select(vec3f(0.0), (beam + through) / max(unshadowed, vec3f(1e-30)), unshadowed > vec3f(0.0));
     entered[transport.site_count + index] = vec4f(min(open, vec3f(1.0)), 0.0);
-}
-
-// Mean depth of one of three strata of equal power, in mean free paths, of a ray that ends at an optical depth and leaves this share behind.
-fn stratum(end: vec3f, share: vec3f, k: u32) -> vec3f {
-    let thin = (f32(k) + 0.5) / 3.0 * end;
-    let begin = -log(1.0 - f32(k) / 3.0 * share);
-    let to = select(-log(1.0 - f32(k + 1u) / 3.0 * share), min(end, vec3f(80.0)), k == 2u);
-    let mean = ((1.0 + begin) * exp(-begin) - (1.0 + to) * exp(-to)) * 3.0 / max(share, vec3f(1e-20));
-    return select(mean, thin, end < vec3f(0.02));
 }
 
 // Mean curvature of the surface about a site, 1/mm, above 0 where it bulges.

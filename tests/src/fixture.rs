@@ -3,7 +3,8 @@
 use crate::{Model, gpu};
 use std::sync::Arc;
 use translume::{
-    Body, BodyDescriptor, Cluster, Error, Frame, Profile, ShadowOptions, Stage, Work, readback, wgpu,
+    Body, BodyDescriptor, Cluster, Error, Frame, Profile, ShadowOptions, Stage, Transport, Work, readback,
+    wgpu,
 };
 use translume_reference::gather::Source;
 
@@ -41,6 +42,7 @@ impl Fixture {
         let mut descriptor = BodyDescriptor {
             mm_per_unit: 1.0,
             profile: Profile::DipoleNormalised,
+            transport: Transport::Classic,
             shadows: ShadowOptions { resolution: 256, ..ShadowOptions::default() },
             ..BodyDescriptor::new(&model.mesh, &model.atlas)
         };

@@ -98,8 +98,9 @@ pub struct Render {
     /// Even out charts until every texel holds about the same area of the surface.
     #[arg(long)]
     pub even: bool,
-    /// How light goes through the body: classic (as if it were a half-space around every texel; the default), boundary (diffusion with the boundary that
-    /// the body has, for thin parts and light from behind), or layers (the same, and light leaves as the field under the surface says).
+    /// How light goes through the body: auto (the default: layers where light crosses the body, classic where it stays at the surface or a profile or
+    /// method is asked for), classic (as if the body were a half-space around every texel), boundary (diffusion with the boundary that the body has, for
+    /// thin parts and light from behind), or layers (the same, and light leaves as the field under the surface says).
     #[arg(long, value_name = "NAME")]
     pub transport: Option<String>,
     /// Diffuse profile: half-space (random walks, tabulated, light by its angle; the default), half-space-diffuse (all light as from all sides), dipole (the paper's formula to the letter), dipole-normalised, dipole-oriented (its sources below and above the surface), better-dipole, photon-beam, normalised-diffusion,

@@ -35,7 +35,7 @@ use crate::stages::visibility::SkyMemory;
 use crate::stages::{Stage, StageSet, Stages};
 use crate::standing::Standing;
 use crate::timings::Timer;
-use crate::{Error, Light, Medium, Profile, ShadowOptions};
+use crate::{Error, Light, Medium, Profile, ShadowOptions, Transport};
 use glam::{Mat4, Vec3};
 use std::sync::Arc;
 
@@ -202,7 +202,7 @@ impl Body {
             solver: Solver::new(descriptor.transport),
             model: Mat4::IDENTITY,
             exit_scale: 1.0,
-            boundary: Boundary::new(profile, &medium, descriptor.transport),
+            boundary: Boundary::new(profile, &medium, Transport::Classic),
             pose: Pose::rest(&extent),
             next_pose: Pose::rest(&extent),
             host: HostNumbers::new(descriptor.host_vertices, extent.vertices),
@@ -245,6 +245,22 @@ impl Body {
     ) -> Result<(), Error> {
         let model = Mat4::from_cols_array_2d(&frame.model);
         frame::validate_model(model)?;
+        let before = self.solver.transport;
+        self.use_transport(self.transport_for(model));
+        let taken = self.take_over(device, queue, frame, model);
+        if taken.is_err() {
+            self.use_transport(before);
+        }
+        taken
+    }
+
+    fn take_over(
+        &mut self,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        frame: &Frame<'_>,
+        model: Mat4,
+    ) -> Result<(), Error> {
         self.next_pose.set(frame.deformation, frame.warp)?;
         if let Some(adopted) = &self.next_pose.adopted {
             self.host.check(adopted, &self.limits)?;

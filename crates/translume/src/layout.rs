@@ -296,7 +296,7 @@ pub(crate) struct TransportLayout {
     pub diffusion: [f32; 4],
     pub decay: [f32; 4],
     pub robin: [f32; 4],
-    pub boost: [f32; 4],
+    pub shortfall: [f32; 4],
     pub site_count: u32,
     pub top_level: u32,
     pub eta: f32,

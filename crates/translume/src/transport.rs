@@ -11,14 +11,19 @@ use crate::{Error, Medium, fresnel};
 /// use translume::Transport;
 ///
 /// assert_eq!("layers".parse(), Ok(Transport::BoundaryLayers));
-/// assert_eq!(Transport::Boundary.name(), "boundary");
+/// assert_eq!(Transport::default().name(), "auto");
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Transport {
+    /// What serves: [`BoundaryLayers`](Self::BoundaryLayers) where light crosses the body and a frame can afford it, [`Classic`](Self::Classic) for bodies
+    /// of so many mean free paths that as many sites as keep a frame short could not tell their surface, and for whoever chose what only classic transport
+    /// knows: another [`Profile`](crate::Profile) than the default, another method than the dual scatter, points in place of texels, light that wanders
+    /// differently far from place to place, or bodies that take turns with memory. [`Body::transport_in_use`](crate::Body::transport_in_use) says which.
+    #[default]
+    Auto,
     /// Every texel as if the body were a half-space around it: the [`Profile`](crate::Profile) of the straight line from where light entered. One sum a
     /// frame. Right on thick, smooth bodies; tens of percent off, and more, in thin parts and with the light behind.
-    #[default]
     Classic,
     /// Diffusion with the boundary that the body has, as an integral equation for the fluence on its surface that a few sums a frame solve,
     /// each from where the last frame stopped. Light that scattered first is put where it did, crosses thin parts that are in their own shadow,
@@ -31,13 +36,14 @@ pub enum Transport {
 }
 
 impl Transport {
-    /// All of them, the cheapest first.
-    pub const ALL: [Self; 3] = [Self::Classic, Self::Boundary, Self::BoundaryLayers];
+    /// The choice, then all there is to choose from, the cheapest first.
+    pub const ALL: [Self; 4] = [Self::Auto, Self::Classic, Self::Boundary, Self::BoundaryLayers];
 
     /// As it is written in files and on command lines.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
+            Self::Auto => "auto",
             Self::Classic => "classic",
             Self::Boundary => "boundary",
             Self::BoundaryLayers => "layers",
@@ -51,7 +57,7 @@ impl std::str::FromStr for Transport {
     fn from_str(name: &str) -> Result<Self, Error> {
         Self::ALL.into_iter().find(|transport| transport.name() == name).ok_or_else(|| Error::Frame {
             problem: format!("no transport is called {name}"),
-            remedy: "take classic, boundary or layers",
+            remedy: "take auto, classic, boundary or layers",
         })
     }
 }
@@ -62,20 +68,35 @@ const MILNE: f64 = 1.065;
 const CLEAR: f64 = 1e-6;
 
 /// A site is no wider than this, in mean free paths of the channel where they are shortest.
-const WIDEST_SITE: f32 = 1.5;
+const WIDEST_SITE: f32 = 2.0;
+/// Where a frame has to be short: what goes through the body is as right, but light's edges are less sharp.
+const WIDEST_SITE_IN_HASTE: f32 = 4.0;
 /// Nor are there fewer of them: the shape counts, too.
 const FEWEST_SITES: u32 = 4096;
-/// 16 texels.
-const COARSEST_LEVEL: u32 = 2;
+/// More of them take longer than a frame has.
+const MOST_SITES: u32 = 20_000;
+/// 256 texels.
+const COARSEST_LEVEL: u32 = 4;
 
 /// Of the texels' tree, that whose nodes are the sites; `texel` is the width of one, mm.
-pub(crate) fn site_level(medium: &Medium, texels: u32, texel: f32) -> u32 {
-    let densest = (0..3).map(|k| medium.sigma_s_prime[k] + medium.sigma_a[k]).fold(0.0, f32::max);
+pub(crate) fn site_level(medium: &Medium, texels: u32, texel: f32, is_hasty: bool) -> u32 {
+    let widest = if is_hasty { WIDEST_SITE_IN_HASTE } else { WIDEST_SITE };
     let serves = |level: &u32| {
-        let per_site = 1 << (2 * level);
-        texel * (1 << level) as f32 * densest <= WIDEST_SITE && texels / per_site >= FEWEST_SITES
+        width_in_paths(medium, texel, *level) <= widest && texels >> (2 * level) >= FEWEST_SITES
     };
     (1..=COARSEST_LEVEL).take_while(serves).last().unwrap_or(0)
+}
+
+/// Whether a solver in haste can tell the surface of a body, and a frame of it is short.
+pub(crate) fn pays(medium: &Medium, texels: u32, texel: f32) -> bool {
+    let level = site_level(medium, texels, texel, true);
+    texels >> (2 * level) <= MOST_SITES && width_in_paths(medium, texel, level) <= WIDEST_SITE_IN_HASTE
+}
+
+/// Of a site, in mean free paths of the channel where they are shortest.
+fn width_in_paths(medium: &Medium, texel: f32, level: u32) -> f32 {
+    let densest = (0..3).map(|k| medium.sigma_s_prime[k] + medium.sigma_a[k]).fold(0.0, f32::max);
+    texel * (1 << level) as f32 * densest
 }
 
 /// What the shaders need to know of a medium and of the sites of a body; `texel` is the width of one, mm.
@@ -97,14 +118,14 @@ pub(crate) fn layout(medium: &Medium, sites: &Sites, groups: u32, texel: f32) ->
     let row = |k: usize, geometry: f32| {
         [channels[0][k] as f32, channels[1][k] as f32, channels[2][k] as f32, geometry]
     };
-    let boost = channels.map(|[_, albedo, ..]| (1.0 + shortfall(albedo)) as f32);
+    let lacking = channels.map(|[_, albedo, ..]| shortfall(albedo) as f32);
     TransportLayout {
         extinction: row(0, 0.0),
         albedo: row(1, 0.0),
         diffusion: row(2, 1.0),
         decay: row(3, 0.0),
         robin: [robin, robin, robin, 0.0],
-        boost: [boost[0], boost[1], boost[2], 0.0],
+        shortfall: [lacking[0], lacking[1], lacking[2], 0.0],
         site_count: tree.counts[0],
         top_level: tree.top_level(),
         eta: medium.ior,
@@ -126,11 +147,11 @@ pub(crate) fn exit_scale(ior: f32) -> f32 {
     (1.0 / fresnel::hemispherical_transmittance(ior.into())) as f32
 }
 
-/// ρ: by how much single scattering has to count more, so that a half-space in an even light returns Chandrasekhar's albedo, over √(1 − α') in steps of
-/// .05: `translume_reference::transport::shortfall`, against which a test holds it.
+/// What diffusion lacks of light that scatters again, over what scattered once deep inside, so that a half-space in an even light returns Chandrasekhar's
+/// albedo: over √(1 − α') in steps of .05, `translume_reference::transport::shortfall`, against which a test holds it.
 const SHORTFALL: [f64; 21] = [
-    0.3016, 0.2695, 0.2441, 0.2224, 0.2026, 0.1838, 0.1655, 0.1477, 0.1305, 0.1139, 0.0982, 0.0835, 0.0699,
-    0.0574, 0.0461, 0.0359, 0.0269, 0.0189, 0.0118, 0.0056, 0.0,
+    1.7394, 1.5860, 1.4612, 1.3510, 1.2471, 1.1455, 1.0443, 0.9436, 0.8440, 0.7466, 0.6526, 0.5628, 0.4780,
+    0.3988, 0.3253, 0.2577, 0.1959, 0.1396, 0.0886, 0.0425, 0.0,
 ];
 
 fn shortfall(albedo: f64) -> f64 {
@@ -159,9 +180,20 @@ mod tests {
     #[test]
     fn sites_are_as_wide_as_light_wanders() {
         let medium = |scattering| Medium { sigma_s_prime: [scattering; 3], sigma_a: [0.0; 3], ior: 1.0 };
-        let level = |scattering, texels| site_level(&medium(scattering), texels, 0.2);
-        assert_eq!([10.0, 3.0, 1.5, 0.1].map(|scattering| level(scattering, 200_000)), [0, 1, 2, 2]);
+        let level = |scattering, texels| site_level(&medium(scattering), texels, 0.2, false);
+        assert_eq!([11.0, 4.0, 2.0, 0.1].map(|scattering| level(scattering, 200_000)), [0, 1, 2, 2]);
         assert_eq!([10_000, 40_000, 70_000].map(|texels| level(0.1, texels)), [0, 1, 2]);
+    }
+
+    #[test]
+    fn a_solver_pays_where_light_crosses_a_site() {
+        let medium = |scattering| Medium { sigma_s_prime: [scattering; 3], sigma_a: [0.0; 3], ior: 1.0 };
+        let is_worth = |scattering, texels, texel| pays(&medium(scattering), texels, texel);
+        assert!(is_worth(4.0, 200_000, 0.2), "sixteen texels to a site");
+        assert!(!is_worth(6.0, 200_000, 0.2), "too many sites, or too wide");
+        assert!(is_worth(6.0, 10_000, 0.6), "texels will do");
+        assert!(!is_worth(10.0, 10_000, 0.6), "they are too wide");
+        assert!(is_worth(4.0, 800_000, 0.1), "of a finer atlas sites hold more");
     }
 
     #[test]

@@ -4,7 +4,7 @@ use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
 use std::time::{Duration, Instant};
 use translume::{
     AmbientLight, Body, BodyDescriptor, Clock, Deformation, Frame, FrameTimings, Light, Lighting, Medium,
-    Method, PointLight, ShadowOptions, Stage, Work, wgpu,
+    Method, PointLight, ShadowOptions, Stage, Transport, Work, wgpu,
 };
 use translume_tests::{Check, Gpu, at_least, at_most, creature, holds, notices};
 
@@ -47,6 +47,7 @@ impl<'a> Melting<'a> {
         let model = creature();
         let descriptor = BodyDescriptor {
             mm_per_unit: 1.0,
+            transport: Transport::Classic,
             shadows: ShadowOptions { resolution: 128, direction_resolution: 32, ..Default::default() },
             ..BodyDescriptor::new(&model.mesh, &model.atlas)
         };

@@ -2,7 +2,8 @@
 
 use std::sync::Arc;
 use translume::{
-    AmbientLight, Camera, DirectionalLight, Error, Light, LookAt, Medium, Method, Transport, View, readback,
+    AmbientLight, Camera, DirectionalLight, Error, Light, LookAt, Medium, Method, Profile, Transport, View,
+    readback,
 };
 use translume_reference::gather::Source;
 use translume_reference::path::{Closed, Volume};
@@ -144,6 +145,95 @@ fn lags(warm_frames: [f32; 4], bound: f64) -> Check {
 fn a_frame_goes_on_from_the_last() {
     holds(lags([0.0, 1.0, 2.0, 3.0], 0.02));
     notices(lags([0.0, 1.0, 2.0, 2.0], 0.02));
+}
+
+/// Figures: `TRANSLUME_MODELS=… cargo test --release -p translume-tests --test gpu -- --ignored --nocapture sixty_frames`.
+#[test]
+#[ignore = "minutes on a software rasteriser; for reading"]
+fn sixty_frames_in_figures() {
+    const MILK: Medium =
+        Medium { sigma_s_prime: [0.7, 1.22, 1.9], sigma_a: [0.0014, 0.0025, 0.0142], ior: 1.0 };
+    let Some(folder) = std::env::var_os("TRANSLUME_MODELS") else { return };
+    let mesh = translume_mesh::load::load(&std::path::Path::new(&folder).join("stanford-bunny.obj"))
+        .expect("the bunny")
+        .mesh;
+    let along = |axis: usize| mesh.positions.iter().map(move |p| p[axis]);
+    let height = along(1).fold(f32::MIN, f32::max) - along(1).fold(f32::MAX, f32::min);
+    let model = Model::new(mesh, 256);
+    let made = || {
+        Fixture::new(&model, |d| {
+            (d.medium, d.transport, d.method) = (MILK, Transport::Boundary, Method::default());
+            d.mm_per_unit = 50.0 / height;
+        })
+    };
+    let mut warm = made();
+    println!("| frame | lag of a light that turns by 3° and a twist by 1° a frame | pumping |");
+    println!("| --- | --- | --- |");
+    let mut levels: Vec<f64> = Vec::new();
+    for frame in 0..60 {
+        let mut pose = Pose::rest(0);
+        pose.warp.twist = (frame as f32).to_radians();
+        let (sin, cos) = (3.0 * frame as f32).to_radians().sin_cos();
+        let lights = [sun([sin, 0.3, -cos])];
+        warm.run(&pose.frame(&lights));
+        if frame % 6 == 5 {
+            let mut cold = made();
+            for _ in 0..3 {
+                cold.run(&pose.frame(&lights));
+            }
+            let mean = |fixture: &Fixture| -> f64 {
+                let area = |(source, value): (&Source, &[f64; 3])| source.area * value[1];
+                fixture.sources().iter().zip(&fixture.exitance()).map(area).sum()
+            };
+            levels.push(mean(&warm) / mean(&cold));
+            let lag = apart(&cold, &warm.exitance(), &cold.exitance());
+            println!(
+                "| {frame} | {:.2} % | {:+.2} % |",
+                100.0 * lag,
+                100.0 * (mean(&warm) / mean(&cold) - 1.0)
+            );
+        }
+    }
+    assert!(levels.len() == 10, "ten looks");
+}
+
+/// What serves is chosen by how far light goes, unless somebody chose what the solver does not know.
+#[test]
+fn auto_solves_where_light_crosses_the_body() {
+    let model = sphere_with(48);
+    let (pose, lights) = (Pose::rest(0), [sun([1.0, 0.2, 0.3])]);
+    let made = |transport, profile: Profile| {
+        let mut fixture = Fixture::new(&model, |d| {
+            (d.medium, d.transport, d.profile) = (THIN, transport, profile.clone());
+        });
+        fixture.run(&pose.frame(&lights));
+        fixture
+    };
+    let mut auto = made(Transport::Auto, Profile::default());
+    let [solved, classic] =
+        [Transport::BoundaryLayers, Transport::Classic].map(|transport| made(transport, Profile::default()));
+    let same = |auto: &Fixture, other: &Fixture| {
+        at_most("auto", apart(auto, &auto.exitance(), &other.exitance()), 1e-4)
+    };
+    assert_eq!(auto.body.transport_in_use(), Transport::BoundaryLayers);
+    assert_eq!(auto.body.transport(), Transport::Auto);
+    holds(same(&auto, &solved));
+    notices(same(&auto, &classic));
+
+    let dense = Medium { sigma_s_prime: [30.0; 3], ..THIN };
+    auto.body.set_medium(dense).unwrap_or_else(|error| panic!("{error}"));
+    auto.run(&pose.frame(&lights));
+    assert_eq!(auto.body.transport_in_use(), Transport::Classic);
+    auto.body.set_medium(THIN).unwrap_or_else(|error| panic!("{error}"));
+    for _ in 0..2 {
+        auto.run(&pose.frame(&lights));
+    }
+    assert_eq!(auto.body.transport_in_use(), Transport::BoundaryLayers);
+    // Two frames that begin with nothing: measured .1 %.
+    holds(at_most("back again", apart(&auto, &auto.exitance(), &solved.exitance()), 0.01));
+
+    let chosen = made(Transport::Auto, Profile::DipoleNormalised);
+    assert_eq!(chosen.body.transport_in_use(), Transport::Classic);
 }
 
 /// A host may look at the irradiance before it goes on.

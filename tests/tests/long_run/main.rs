@@ -12,7 +12,7 @@ use complaints::Complaints;
 use std::time::Instant;
 use translume::{
     AmbientLight, Body, BodyDescriptor, Config, Deformation, DirectionalLight, Frame, Light, Lighting,
-    Medium, ShadowOptions, Translume, wgpu,
+    Medium, ShadowOptions, Translume, Transport, wgpu,
 };
 use translume_mesh::{Atlas, AtlasOptions, MorphTarget, Warp, builtin};
 
@@ -88,6 +88,7 @@ fn bodies(host: &Host, translume: &Translume) -> Vec<Body> {
             medium: [Medium::JADE, Medium::SKIN1, Medium::WAX][k % 3],
             mm_per_unit: 1.0,
             shares_scratch: k.is_multiple_of(2),
+            transport: if k % 25 == 1 { Transport::Boundary } else { Transport::Classic },
             shadows: ShadowOptions {
                 resolution: 32,
                 area_points: 4,

@@ -22,7 +22,7 @@ use eframe::egui;
 use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use translume::{Camera, Composite, Config, Frame, Light, Lighting, Translume, View};
+use translume::{Camera, Composite, Config, Frame, Light, Lighting, Translume, Transport, View};
 use web_time::Instant;
 
 /// The seat of what is exported.
@@ -193,17 +193,27 @@ impl Easel {
         let seat = self.seat(seat, loaded, (substance, &scene.albedo), *pixels, *samples)?;
         seat.lights.update(scene.lights.as_deref().unwrap_or_default(), loaded.opened.just_below_y0())?;
         let camera = subject.look(&camera(scene, &subject, VIEW));
-        let is_one_picture = *moving && *overlay == Overlay::None;
-        let frame = Frame {
-            model: moment.model.to_cols_array_2d(),
-            deformation: (&moment.pose).into(),
-            warp: motion.warp,
-            lighting: Lighting::Lights(&seat.lights.lights),
-            casters: None,
-            view: is_one_picture.then(|| View { camera, pixels: seat.studio.pixels() }),
-        };
-        seat.studio.draw(&frame, &camera, gloss)?;
-        Ok(camera)
+        let view = View { camera, pixels: seat.studio.pixels() };
+        loop {
+            // Layers are of one picture, too, and which transport it is the first frame tells.
+            let has_layers = seat.studio.body().transport_in_use() == Transport::BoundaryLayers;
+            let is_one_picture = *overlay == Overlay::None && (*moving || has_layers);
+            let frame = Frame {
+                model: moment.model.to_cols_array_2d(),
+                deformation: (&moment.pose).into(),
+                warp: motion.warp,
+                lighting: Lighting::Lights(&seat.lights.lights),
+                casters: None,
+                view: is_one_picture.then_some(view),
+            };
+            seat.studio.draw(&frame, &camera, gloss)?;
+            let body = seat.studio.body();
+            let is_other = has_layers != (body.transport_in_use() == Transport::BoundaryLayers);
+            // A picture that moves on is not waited for.
+            if !is_other && (*samples == 1 || body.is_settled()) {
+                return Ok(camera);
+            }
+        }
     }
 
     /// The body, made anew where its mesh or its way of scattering is another.
@@ -258,7 +268,7 @@ async fn counters(gpu: &Gpu, seat: &Seat) -> Result<Counters, Error> {
         }
         None => None,
     };
-    Ok(Counters { texels, evaluations, lists })
+    Ok(Counters { transport: seat.studio.body().transport_in_use(), texels, evaluations, lists })
 }
 
 impl Lit {

@@ -19,7 +19,7 @@ use std::f32::consts::PI;
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
-use translume::{Body, Config, Evaluate, Frame, Lighting, Method, Translume, wgpu};
+use translume::{Body, Config, Evaluate, Frame, Lighting, Method, Translume, Transport, wgpu};
 use web_time::Instant;
 
 /// Pixels across a picture by paths.
@@ -143,8 +143,7 @@ async fn errors(scene: &Scene, loaded: &Loaded, court: &Court) -> Result<Judged,
         lighting: Lighting::Lights(&lights),
         ..Default::default()
     };
-    let substance = Substance::new(scene, Path::new(""))?;
-    let exact = Substance { method: Method::AllPairs, evaluate: Evaluate::PerTexel, ..substance.clone() };
+    let mut substance = Substance::new(scene, Path::new(""))?;
     let exitance = async |substance: &Substance| {
         let descriptor = substance.descriptor(&opened.model.mesh, &loaded.atlas, opened.flat_normals);
         let mut body = translume.create_body(&gpu.device, &descriptor)?;
@@ -152,6 +151,10 @@ async fn errors(scene: &Scene, loaded: &Loaded, court: &Court) -> Result<Judged,
         albedo::apply(&mut body, &gpu.queue, scene.albedo.as_deref(), laid)?;
         exitance(gpu, &mut body, &frame).await
     };
+    if substance.transport == Transport::Auto {
+        substance.transport = Transport::Classic;
+    }
+    let exact = Substance { method: Method::AllPairs, evaluate: Evaluate::PerTexel, ..substance.clone() };
     let errors = overlay::errors(&exitance(&substance).await?, &exitance(&exact).await?);
     let rms = (errors.iter().map(|error| error * error).sum::<f32>() / errors.len().max(1) as f32).sqrt();
     let mut sorted = errors.clone();

@@ -14,7 +14,7 @@ use eframe::egui;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
-use translume::FrameTimings;
+use translume::{FrameTimings, Transport};
 
 /// What the window wants.
 pub enum Order {
@@ -62,6 +62,8 @@ pub struct Shown {
 /// What the scatter did, as far as its method tells.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Counters {
+    /// What ran.
+    pub transport: Transport,
     pub texels: usize,
     /// Kernel evaluations of an average texel.
     pub evaluations: f32,

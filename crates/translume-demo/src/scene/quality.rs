@@ -11,7 +11,7 @@ use translume_mesh::{AtlasOptions, ChartSource};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Quality {
-    /// classic, boundary or layers.
+    /// auto, classic, boundary or layers.
     pub transport: String,
     /// By name, or the name of a table's .json. Of classic transport.
     pub profile: String,
@@ -87,10 +87,11 @@ impl Quality {
             let known = Transport::ALL.map(Transport::name).join(", ");
             return fail(format!("\"{name}\" is no transport; known are {known}"));
         };
-        if transport != Transport::Classic && self.method != "dual" {
+        let is_solved = !matches!(transport, Transport::Auto | Transport::Classic);
+        if is_solved && self.method != "dual" {
             return fail(format!("{name} is not summed up by {}; use dual", self.method));
         }
-        if transport != Transport::Classic && matches!(self.evaluate.as_str(), "vertex" | "fragment") {
+        if is_solved && matches!(self.evaluate.as_str(), "vertex" | "fragment") {
             return fail(format!("{name} is evaluated per texel, not per {}", self.evaluate));
         }
         Ok(transport)

@@ -69,9 +69,7 @@ impl Parabola {
 
     /// φ along a ray that leaves at this cosine, so far from where it does.
     fn at(&self, medium: &Coefficients, cosine: f64, s: f64, chord: f64) -> f64 {
-        let short = (1.0 - chord * cosine / self.thickness.max(1e-12)).clamp(0.0, 1.0);
-        let turned = if chord.is_finite() { short * s / chord.max(1e-12) } else { 0.0 };
-        let depth = (cosine * s * (1.0 - turned)).min(self.reach);
+        let depth = depth_along(self.thickness, cosine, s, chord).min(self.reach);
         let shifted = depth - hopf_shift(depth * medium.extinction) / medium.extinction;
         self.surface + shifted * (self.slope + shifted * self.curve) - self.beam * (-self.rate * depth).exp()
     }
@@ -92,6 +90,13 @@ impl Parabola {
         };
         medium.albedo / (4.0 * PI) * share * (0..STEPS).map(step).sum::<f64>() / f64::from(STEPS)
     }
+}
+
+/// Depth of a ray that leaves at this cosine, so far from where it does, mm.
+fn depth_along(thickness: f64, cosine: f64, s: f64, chord: f64) -> f64 {
+    let short = (1.0 - chord * cosine / thickness.max(1e-12)).clamp(0.0, 1.0);
+    let turned = if chord.is_finite() { short * s / chord.max(1e-12) } else { 0.0 };
+    cosine * s * (1.0 - turned)
 }
 
 /// A place of the surface that is seen.
@@ -119,6 +124,15 @@ impl<'a> Layers<'a> {
         Self { solution, parabolas: parabolas.collect() }
     }
 
+    /// How far the surface is from a place so far along the ray, mm.
+    pub(super) fn depth_at(&self, seen: &Seen, s: f64) -> f64 {
+        let of = |site: usize| self.solution.thickness[site];
+        let own: f64 = seen.sites.iter().map(|&(site, weight)| weight * of(site)).sum();
+        let near = depth_along(own, seen.cosine, s, seen.chord);
+        let far = seen.far.map(|(site, there)| depth_along(of(site), there, seen.chord - s, seen.chord));
+        far.map_or(near, |far| near.min(far))
+    }
+
     /// Radiance of light that scattered more than once, W/(m² sr).
     #[must_use]
     pub fn radiance(&self, seen: &Seen) -> [f64; 3] {
@@ -140,7 +154,8 @@ fn parabolas(solution: &Solution<'_>, index: usize) -> [Parabola; 3] {
         let medium = &solution.medium[k];
         let depth = Depth::of(medium, thickness);
         let below = DVec3::from(site.position) - DVec3::from(site.normal) * depth.0;
-        let fluence = [solution.fluence[index][k], solution.fluence_at(below.to_array())[k]];
+        let under = solution.fluence_at(below.to_array())[k] - source.spread[k];
+        let fluence = [solution.fluence[index][k], under];
         let light = (source.irradiance[k], source.cosine);
         Parabola::new(medium, fluence, solution.returning[index][k], light, depth, thickness)
     })

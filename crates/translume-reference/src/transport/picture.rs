@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use translume_mesh::Atlas;
 
 use super::layer::Seen;
-use super::shortfall::shortfall;
+use super::shortfall::{share, shortfall};
 use super::single::single;
 use super::source::Lamps;
 use super::{Layers, Solution};
@@ -41,7 +41,7 @@ pub fn picture(
         solution,
         layers,
         lamps: Lamps::new(solution.body.lights),
-        boost: std::array::from_fn(|k| 1.0 + shortfall(&solution.medium[k])),
+        shortfall: std::array::from_fn(|k| shortfall(&solution.medium[k])),
     };
     expose(camera, |index| {
         let direction =
@@ -57,8 +57,8 @@ struct Eye<'a> {
     solution: &'a Solution<'a>,
     layers: Option<Layers<'a>>,
     lamps: Lamps,
-    /// How much single scattering counts.
-    boost: [f64; 3],
+    /// Of each channel.
+    shortfall: [f64; 3],
 }
 
 /// Rays that graze the surface by less than this run along it.
@@ -88,8 +88,14 @@ impl Eye<'_> {
             let (site, _) = texels_at(self.atlas, &far).max_by(|a, b| a.1.total_cmp(&b.1))?;
             Some((site, normal.dot(direction).max(GRAZING)))
         });
-        let many = layers.radiance(&Seen { sites, cosine: cosine.max(GRAZING), chord, far });
-        let once = single(&self.solution.medium, rays, &self.lamps, ray, &segments, &mut dice);
-        std::array::from_fn(|k| many[k] + self.boost[k] * once[k])
+        let seen = Seen { sites, cosine: cosine.max(GRAZING), chord, far };
+        let many = layers.radiance(&seen);
+        // Parts of the ray behind the first are out of the layers' sight.
+        let counts = |k: usize, segment: usize, way: f64| {
+            let depth = if segment == 0 { layers.depth_at(&seen, way) } else { 0.0 };
+            1.0 + share(self.shortfall[k], self.solution.medium[k].extinction * depth)
+        };
+        let once = single(&self.solution.medium, rays, &self.lamps, (ray, &segments), &counts, &mut dice);
+        std::array::from_fn(|k| many[k] + once[k])
     }
 }

@@ -1,8 +1,10 @@
-//! What diffusion lacks where light enters, from the exact half-space.
+//! What diffusion lacks of light that scatters again, from exact half-spaces.
 //!
-//! Light that scatters twice or thrice close to where it came in is no matter of diffusion. An even half-space returns R_H = 1 − H(μ₀) √(1 − α')
-//! (Chandrasekhar 1950, §33), R_1 of it after one scattering, and by the model R_m after more. What is lacking, R_H − R_1 − R_m, falls off with
-//! depth as the light that enters does (within 2 % of what a slab of one to three mean free paths lets through), so it is a share ρ of single scattering.
+//! Light that scatters twice or thrice close together is no matter of diffusion. An even half-space returns R_H = 1 − H(μ₀) √(1 − α') (Chandrasekhar
+//! 1950, §33), R_1 of it after one scattering, and by the model R_m after more. What is lacking as a function of both directions, R_H − R_1 − R_m, is
+//! nearly even where R_1 rises by a factor of ten towards grazing ones: light that scatters at the surface leaves, and only deeper is it as likely to
+//! scatter again close by. So it is taken to be single scattering times ρ (1 − e^−x), x the optical depth of its place under the nearest surface. Beside
+//! exact slabs of .25 to 16 mean free paths this leaves 1 to 4 % on both sides, where ρ' times single scattering leaves up to 13 %.
 
 use super::coefficients::{Coefficients, hopf_depth};
 use super::layer::{Depth, Parabola};
@@ -11,17 +13,17 @@ use super::source::Strata;
 /// Steps of cosines.
 const STEPS: u32 = 32;
 
-/// ρ: by how much single scattering has to count more, so that a half-space in an even light returns what it does; and never less than 0.
+/// ρ, so that a half-space in an even light returns what it does; and never less than 0.
 pub(super) fn shortfall(medium: &Coefficients) -> f64 {
     let h = Chandrasekhar::new(medium.albedo);
-    let (mut lacking, mut single) = (0.0, 0.0);
+    let (mut lacking, mut again) = (0.0, 0.0);
     for cosine in cosines() {
         let all = 1.0 - h.at(cosine) * (1.0 - medium.albedo).sqrt();
         let once = returned_once(medium.albedo, cosine);
         lacking += cosine * (all - once - returned_by_diffusion(medium, cosine));
-        single += cosine * once;
+        again += cosine * returned_from_below(medium.albedo, cosine);
     }
-    if single > 0.0 { (lacking / single).max(0.0) } else { 0.0 }
+    if again > 0.0 { (lacking / again).max(0.0) } else { 0.0 }
 }
 
 fn cosines() -> impl Iterator<Item = f64> {
@@ -33,6 +35,17 @@ fn returned_once(albedo: f64, cosine: f64) -> f64 {
     0.5 * albedo * (1.0 - cosine * (1.0 / cosine).ln_1p())
 }
 
+/// The same where each place counts 1 − e^−x: α'/2 ∫ μ (1/(μ + μ₀) − 1/(μ + μ₀ + μμ₀)) dμ.
+fn returned_from_below(albedo: f64, cosine: f64) -> f64 {
+    let part = |mu: f64| mu * (1.0 / (mu + cosine) - 1.0 / (mu + cosine + mu * cosine));
+    0.5 * albedo * cosines().map(part).sum::<f64>() / f64::from(STEPS)
+}
+
+/// Share ρ (1 − e^−x) at an optical depth.
+pub(super) fn share(rho: f64, depth: f64) -> f64 {
+    -rho * (-depth).exp_m1()
+}
+
 /// R_m: the half-space as the model has it, with its strata and its parabola.
 fn returned_by_diffusion(medium: &Coefficients, cosine: f64) -> f64 {
     let strata = Strata::new(f64::INFINITY);
@@ -42,8 +55,11 @@ fn returned_by_diffusion(medium: &Coefficients, cosine: f64) -> f64 {
         depths.into_iter().map(each).sum::<f64>()
     };
     let depth = Depth::of(medium, f64::INFINITY);
-    let parabola =
-        Parabola::new(medium, [fluence(0.0), fluence(depth.0)], 0.0, (1.0, cosine), depth, f64::INFINITY);
+    let fold = cosine / medium.extinction;
+    let further = |k: usize| strata.away(k, fold, depths[k], depth.0) - (depth.0 - depths[k]).abs();
+    let spread = (0..depths.len()).map(further).sum::<f64>() / depths.len() as f64;
+    let below = fluence(depth.0) - 0.5 * medium.albedo * spread / medium.diffusion;
+    let parabola = Parabola::new(medium, [fluence(0.0), below], 0.0, (1.0, cosine), depth, f64::INFINITY);
     let leaving =
         |mu: f64| 2.0 * std::f64::consts::PI * mu * parabola.radiance(medium, None, mu, f64::INFINITY);
     cosines().map(leaving).sum::<f64>() / f64::from(STEPS)
@@ -95,7 +111,7 @@ mod tests {
 
     #[test]
     fn a_half_space_returns_what_it_does() {
-        for (albedo, least, most) in [(0.999, 0.2, 0.45), (0.9, 0.15, 0.4), (0.3, 0.0, 0.3)] {
+        for (albedo, least, most) in [(0.999, 0.8, 1.4), (0.9, 0.4, 0.9), (0.3, 0.0, 0.3)] {
             let volume =
                 crate::path::Volume { sigma_s: [albedo; 3], sigma_a: [1.0 - albedo; 3], g: 0.0, ior: 1.0 };
             let medium = Coefficients::of(&volume)[0];

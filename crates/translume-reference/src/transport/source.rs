@@ -8,6 +8,7 @@ use glam::DVec3;
 use super::Site;
 use super::coefficients::{Coefficients, hopf_depth};
 use super::disc::Disc;
+use super::layer::Depth;
 use super::rays::{Rays, SKY};
 use crate::Light;
 use crate::dice::Dice;
@@ -30,6 +31,8 @@ pub(super) struct Source {
     pub irradiance: [f64; 3],
     /// Mean cosine of its directions inside to the normal, inwards; 1 in the dark.
     pub cosine: f64,
+    /// How much less φ is at the depth of the value below the surface than from strata that were sheets, W/m².
+    pub spread: [f64; 3],
 }
 
 /// Light on its way in.
@@ -128,12 +131,16 @@ impl Source {
             let sideways = (1.0 - beam.cosine * beam.cosine).max(0.0);
             for (k, channel) in medium.iter().enumerate() {
                 let entered = beam.irradiance[k] * (-channel.extinction * beam.crossed).exp();
-                let Strata { depths, share } = Strata::new(channel.extinction * beam.chord);
+                let rays = Strata::new(channel.extinction * beam.chord);
                 source.irradiance[k] += entered;
                 (sum, slanted) = (sum + entered, slanted + entered * beam.cosine);
-                for (stratum, depth) in strata.iter_mut().zip(depths) {
+                let z = Depth::of(channel, thickness).0;
+                for (s, (stratum, depth)) in strata.iter_mut().zip(rays.depths).enumerate() {
                     let way = depth / channel.extinction;
-                    let power = channel.albedo * entered * share * site.area / COUNT as f64;
+                    let power = channel.albedo * entered * rays.share * site.area / COUNT as f64;
+                    let fold = beam.cosine / channel.extinction;
+                    let sheet = hopf_depth(beam.cosine * depth) / channel.extinction;
+                    source.spread[k] += power * rays.away(s, fold, sheet, z);
                     let (total, place, bent, bends) = &mut stratum[k];
                     *total += power;
                     *place += beam.direction * (way * power);
@@ -157,10 +164,14 @@ impl Source {
                     let lift = ((bent - bends * sideways) / power).clamp(0.0, (0.5 * deep).max(0.0));
                     let depth = (deep - lift).max(0.0);
                     let extinction = medium[k].extinction;
-                    source.place[stratum][k] +=
-                        mean + normal * (lift + depth - hopf_depth(depth * extinction) / extinction);
+                    let sheet = hopf_depth(depth * extinction) / extinction;
+                    source.place[stratum][k] += mean + normal * (lift + depth - sheet);
+                    source.spread[k] -= power * (Depth::of(&medium[k], thickness).0 - sheet).abs();
                 }
             }
+        }
+        for (spread, channel) in source.spread.iter_mut().zip(medium) {
+            *spread *= if site.area > 0.0 { 0.5 / (channel.diffusion * site.area) } else { 0.0 };
         }
         source
     }
@@ -183,7 +194,8 @@ impl Beam {
 
 /// A ray that ends at an optical depth, in strata of equal power.
 pub(super) struct Strata {
-    /// Mean depths, in mean free paths.
+    /// Where they begin and end, and mean depths, in mean free paths.
+    edges: [f64; COUNT + 1],
     pub depths: [f64; COUNT],
     /// What is used up.
     pub share: f64,
@@ -193,14 +205,36 @@ impl Strata {
     pub fn new(end: f64) -> Self {
         let share = -(-end).exp_m1();
         let count = COUNT as f64;
-        if end < 1e-3 {
-            return Self { depths: std::array::from_fn(|k| (k as f64 + 0.5) / count * end), share };
-        }
-        let edge = |k: usize| if k == COUNT { end } else { -(-(k as f64) / count * share).ln_1p() };
+        let is_short = end < 1e-3;
+        let edge = |k: usize| match k {
+            _ if is_short => k as f64 / count * end,
+            COUNT => end,
+            _ => -(-(k as f64) / count * share).ln_1p(),
+        };
+        let edges = std::array::from_fn(edge);
         // −∫ x e^−x.
         let integral = |x: f64| if x < 700.0 { (1.0 + x) * (-x).exp() } else { 0.0 };
-        let depths = std::array::from_fn(|k| (integral(edge(k)) - integral(edge(k + 1))) * count / share);
-        Self { depths, share }
+        let depths = std::array::from_fn(|k| {
+            if is_short {
+                0.5 * (edge(k) + edge(k + 1))
+            } else {
+                (integral(edge(k)) - integral(edge(k + 1))) * count / share
+            }
+        });
+        Self { edges, depths, share }
+    }
+
+    /// How far a stratum is on the mean from a point at a depth `z`, E|z − z'|, whose sheet is at a depth below the same plane. `fold` is the depth over
+    /// which light is used up to 1/e; mm.
+    pub fn away(&self, k: usize, fold: f64, sheet: f64, z: f64) -> f64 {
+        let shift = fold * self.depths[k] - sheet;
+        let [begin, end] = [self.edges[k], self.edges[k + 1]].map(|edge| fold * edge - shift);
+        if z <= begin || z >= end {
+            return (z - sheet).abs();
+        }
+        let above = (z - begin) / fold;
+        let used_up = -(self.edges[k] - self.edges[k + 1]).exp_m1();
+        2.0 * fold * (above + (-above).exp_m1()) / used_up + sheet - z
     }
 }
 
@@ -230,7 +264,7 @@ mod tests {
     #[test]
     fn strata_keep_the_mean_depth() {
         for end in [1e-5, 1e-2, 0.5, 3.0, 50.0, 1e9] {
-            let Strata { depths, share } = Strata::new(end);
+            let Strata { depths, share, .. } = Strata::new(end);
             let mean = depths.iter().sum::<f64>() / COUNT as f64;
             // ∫ x e^−x over what is used up; a short ray's is its middle.
             let exact =

@@ -7,7 +7,7 @@ use crate::evaluate::{Candidates, Evaluate, View};
 use crate::layout::NeedLayout;
 use crate::stages::scatter::points::PointMemory;
 use crate::stages::{Stage, StageSet};
-use glam::Vec3;
+use glam::{Mat4, Vec3};
 
 /// As in `cluster.wgsl`.
 const IN_VIEW: u32 = 1;
@@ -52,8 +52,12 @@ impl Body {
 
     /// Millimetres that a unit of the mesh is at most.
     pub(super) fn scale(&self) -> f32 {
-        let [x, y, z] =
-            [self.model.x_axis, self.model.y_axis, self.model.z_axis].map(|axis| axis.truncate().length());
+        self.scale_of(self.model)
+    }
+
+    /// The same of a model matrix.
+    pub(super) fn scale_of(&self, model: Mat4) -> f32 {
+        let [x, y, z] = [model.x_axis, model.y_axis, model.z_axis].map(|axis| axis.truncate().length());
         self.mm_per_unit * x.max(y).max(z)
     }
 

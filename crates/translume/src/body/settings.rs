@@ -110,16 +110,27 @@ impl Body {
     /// remembers.
     pub fn set_transport(&mut self, transport: Transport) -> Result<(), Error> {
         check_transport(self.extent.texels, transport, self.method, self.evaluate, &self.limits)?;
-        self.method_stale |= transport != self.solver.transport;
-        self.solver.transport = transport;
-        self.renew_surface();
+        self.solver.asked = transport;
         Ok(())
     }
 
-    /// How light goes through the body.
+    /// How light goes through the body, as it was asked for.
     #[must_use]
     pub fn transport(&self) -> Transport {
+        self.solver.asked
+    }
+
+    /// How it goes through the body that was prepared last; never [`Transport::Auto`].
+    #[must_use]
+    pub fn transport_in_use(&self) -> Transport {
         self.solver.transport
+    }
+
+    /// Whether the frame that was prepared last is as right as it gets: a boundary solver comes closer in the few frames after the last change. Always,
+    /// with [`Transport::Classic`].
+    #[must_use]
+    pub fn is_settled(&self) -> bool {
+        self.solver.is_settled()
     }
 
     /// Changes how the scatter sum is evaluated; the next frame scatters anew.
@@ -129,7 +140,7 @@ impl Body {
     pub fn set_method(&mut self, method: Method) -> Result<(), Error> {
         method.validate()?;
         check_method(&self.tree, method, self.evaluate, &self.limits)?;
-        check_transport(self.extent.texels, self.solver.transport, method, self.evaluate, &self.limits)?;
+        check_transport(self.extent.texels, self.solver.asked, method, self.evaluate, &self.limits)?;
         check_kernel(&self.profile, method, self.evaluate)?;
         self.method_stale |= method != self.method;
         self.method = method;
@@ -142,7 +153,7 @@ impl Body {
     /// [`Error::Frame`] where the method has no points, [`Error::Limit`] where the device cannot hold what it remembers.
     pub fn set_evaluate(&mut self, evaluate: Evaluate) -> Result<(), Error> {
         check_method(&self.tree, self.method, evaluate, &self.limits)?;
-        check_transport(self.extent.texels, self.solver.transport, self.method, evaluate, &self.limits)?;
+        check_transport(self.extent.texels, self.solver.asked, self.method, evaluate, &self.limits)?;
         check_kernel(&self.profile, self.method, evaluate)?;
         self.evaluate = evaluate;
         Ok(())

@@ -8,17 +8,21 @@ use crate::stages::scatter::dual::{Demand, ListSizes, Lists};
 use crate::stages::transport::{self as stage, Inputs, Sites, Steps, TransportMemory, TransportStage};
 use crate::stages::{Stage, StageSet, Stages};
 use crate::timings::Recording;
-use crate::{Error, Frame, Transport, transport};
+use crate::{Error, Frame, Profile, Transport, transport};
+use glam::Mat4;
 use std::sync::Arc;
 
 /// Frames after the last change that still solve.
-const SETTLING: u32 = 3;
+const SETTLING: u32 = 6;
 
 /// A tolerance is one of the mean, and a body lit from behind is a hundred times darker than that where it is seen: at the opening angle that serves
 /// exitance squares of the tree show on the bunny, at .77 of it in places, at .6 nowhere.
 const NARROWING: f32 = 0.6;
 
 pub(super) struct Solver {
+    /// As it was asked for.
+    pub asked: Transport,
+    /// What runs; never [`Transport::Auto`].
     pub transport: Transport,
     memory: Option<TransportMemory>,
     /// Whether the next frame has nothing to begin with.
@@ -36,8 +40,10 @@ pub(super) struct Recorded<'a> {
 }
 
 impl Solver {
-    pub fn new(transport: Transport) -> Self {
-        Self { transport, memory: None, is_first: true, unsettled: 0, steps: Steps::default() }
+    /// Until a frame is prepared nobody knows how large the body is.
+    pub fn new(asked: Transport) -> Self {
+        let transport = if asked == Transport::Auto { Transport::Classic } else { asked };
+        Self { asked, transport, memory: None, is_first: true, unsettled: 0, steps: Steps::default() }
     }
 
     pub fn bytes(&self) -> u64 {
@@ -46,7 +52,7 @@ impl Solver {
 
     /// Gives back all memory.
     pub fn forget(&mut self) {
-        *self = Self::new(self.transport);
+        *self = Self { transport: self.transport, ..Self::new(self.asked) };
     }
 
     /// What the frame that is recorded now does.
@@ -57,6 +63,10 @@ impl Solver {
         let is_first = self.is_first && steps.tries > 0;
         self.is_first &= !is_first;
         Some(Recorded { memory, steps, is_first })
+    }
+
+    pub fn is_settled(&self) -> bool {
+        self.transport == Transport::Classic || self.unsettled == 0
     }
 
     pub fn state(&self) -> Option<&wgpu::Buffer> {
@@ -77,11 +87,44 @@ impl Recorded<'_> {
 }
 
 impl Body {
-    fn solver_demand(&self) -> Option<Demand> {
+    /// What the transport that was asked for is in a frame of this size.
+    pub(super) fn transport_for(&self, model: Mat4) -> Transport {
+        if self.solver.asked != Transport::Auto {
+            return self.solver.asked;
+        }
+        let (layers, texels) = (Transport::BoundaryLayers, self.extent.texels);
+        let texel = self.scale_of(model) * self.shape.texel;
+        let is_possible = !self.kind.scaled
+            && !self.shares_scratch
+            && check_transport(texels, layers, self.method, self.evaluate, &self.limits).is_ok();
+        let is_wanted = self.profile == Profile::default() && transport::pays(&self.medium, texels, texel);
+        if is_possible && is_wanted && self.has_room(texel) { layers } else { Transport::Classic }
+    }
+
+    /// Whether there may be as much as the solver takes for texels of this width, mm.
+    fn has_room(&self, texel: f32) -> bool {
+        let Some(demand) = self.demand_of_a_solver() else { return false };
+        let growth = self.growth(demand, &self.sites(texel));
+        growth == 0 || self.account.check(self.memory().total() + growth).is_ok()
+    }
+
+    /// Lets light go through the body so.
+    pub(super) fn use_transport(&mut self, transport: Transport) {
+        if transport != self.solver.transport {
+            self.method_stale = true;
+            self.solver.transport = transport;
+            self.renew_surface();
+        }
+    }
+
+    fn demand_of_a_solver(&self) -> Option<Demand> {
         let Method::Dual { theta } = self.method.resolved() else { return None };
         let theta = if matches!(self.method, Method::Within { .. }) { NARROWING * theta } else { theta };
-        let is_solved = self.solver.transport != Transport::Classic;
-        is_solved.then_some(Demand { list_entries: self.list_entries, theta, evaluate: Evaluate::PerTexel })
+        Some(Demand { list_entries: self.list_entries, theta, evaluate: Evaluate::PerTexel })
+    }
+
+    fn solver_demand(&self) -> Option<Demand> {
+        self.demand_of_a_solver().filter(|_| self.solver.transport != Transport::Classic)
     }
 
     /// Width of a texel, mm.
@@ -89,20 +132,27 @@ impl Body {
         self.scale() * self.shape.texel
     }
 
-    fn site_level(&self) -> u32 {
-        transport::site_level(&self.medium, self.extent.texels, self.texel_width())
+    fn sites(&self, texel: f32) -> Sites {
+        let is_hasty = self.solver.asked == Transport::Auto;
+        Sites::new(
+            self.extent.texels,
+            transport::site_level(&self.medium, self.extent.texels, texel, is_hasty),
+        )
     }
 
-    /// Bytes that the next frame's solver takes beyond what it has.
-    pub(super) fn solver_growth(&self) -> u64 {
-        let Some(demand) = self.solver_demand() else { return 0 };
-        let sites = Sites::new(self.extent.texels, self.site_level());
+    /// Bytes that a solver takes beyond what there is.
+    fn growth(&self, demand: Demand, sites: &Sites) -> u64 {
         let serves = |memory: &TransportMemory| memory.serves(demand, sites.level, &self.limits);
         if self.solver.memory.as_ref().is_some_and(serves) {
             return 0;
         }
-        let needed = stage::bytes(&sites) + ListSizes::new(&sites.tree, demand, &self.limits).bytes();
+        let needed = stage::bytes(sites) + ListSizes::new(&sites.tree, demand, &self.limits).bytes();
         needed.saturating_sub(self.solver.bytes())
+    }
+
+    /// Bytes that the next frame's solver takes beyond what it has.
+    pub(super) fn solver_growth(&self) -> u64 {
+        self.solver_demand().map_or(0, |demand| self.growth(demand, &self.sites(self.texel_width())))
     }
 
     /// Makes the solver ready for the frame, and finds out what it has to do.
@@ -111,7 +161,7 @@ impl Body {
             self.solver.forget();
             return;
         };
-        let sites = Sites::new(self.extent.texels, self.site_level());
+        let sites = self.sites(self.texel_width());
         let groups = TransportMemory::groups(&sites.tree);
         let layout = transport::layout(&self.medium, &sites, groups, self.texel_width());
         let solver = &mut self.solver;
@@ -165,7 +215,7 @@ pub(super) fn check_transport(
     evaluate: Evaluate,
     limits: &wgpu::Limits,
 ) -> Result<(), Error> {
-    if transport == Transport::Classic {
+    if matches!(transport, Transport::Classic | Transport::Auto) {
         return Ok(());
     }
     let at_texels = matches!(evaluate, Evaluate::PerTexel | Evaluate::Auto);

@@ -173,7 +173,7 @@ fn rust_and_wgsl_agree() {
             diffusion,
             decay,
             robin,
-            boost,
+            shortfall,
             site_count,
             top_level,
             eta,

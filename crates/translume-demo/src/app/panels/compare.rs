@@ -38,6 +38,7 @@ pub fn overlays(app: &mut App, ui: &mut egui::Ui) {
                 ui.monospace(value);
                 ui.end_row();
             };
+            row("transport", counters.transport.name().to_owned());
             row("texels", counters.texels.to_string());
             row("evaluations a texel", format!("{:.1}", counters.evaluations));
             if let Some([words, overflow]) = counters.lists {
@@ -62,7 +63,7 @@ fn errors(app: &mut App, ui: &mut egui::Ui) {
             }
         } else if ui
             .button("Compute error")
-            .on_hover_text("all pairs of texels: seconds on a graphics card, minutes without")
+            .on_hover_text("the classical scatter against all pairs of texels: seconds on a graphics card, minutes without")
             .clicked()
         {
             app.judge();

@@ -13,7 +13,7 @@ pub fn show(app: &mut App, ui: &mut egui::Ui) {
     let mut scene = app.scene.clone();
     let quality = &mut scene.quality;
     if choice(ui, "transport", &mut quality.transport, Transport::ALL.map(Transport::name))
-        && quality.transport != Transport::Classic.name()
+        && !matches!(quality.transport.as_str(), "auto" | "classic")
     {
         (quality.method, quality.evaluate) = ("dual".to_owned(), "texel".to_owned());
     }
@@ -34,7 +34,7 @@ pub fn method(ui: &mut egui::Ui, quality: &mut Quality) {
     if choice(ui, "method", &mut quality.method, Quality::METHODS) {
         (quality.tolerance, quality.theta) = (None, None);
         if quality.method != "dual" {
-            Transport::Classic.name().clone_into(&mut quality.transport);
+            Transport::Auto.name().clone_into(&mut quality.transport);
             quality.evaluate = "texel".to_owned();
         }
     }

@@ -86,7 +86,7 @@ impl Default for Setup {
 /// A sphere of 320 triangles with so little asked of it that a picture takes some milliseconds.
 pub const SPHERE: &str = r#"{
     "shape": { "type": "mesh", "file": "sphere.obj" }, "mm_per_unit": 1, "medium": "wax",
-    "quality": { "atlas": 64, "shadow": 256, "directions": 8 },
+    "quality": { "transport": "classic", "atlas": 64, "shadow": 256, "directions": 8 },
     "lights": [
         { "type": "point", "position": [10, 22, 40], "intensity": [3000, 3000, 3000] },
         { "type": "constant_env", "radiance": [0.2, 0.2, 0.2], "shadow": false }

@@ -176,6 +176,7 @@ impl<'a> Shot<'a> {
             medium: self.stage.medium,
             mm_per_unit: self.stage.mm_per_unit,
             flat_normals: self.stage.flat_normals,
+            transport: Transport::Classic,
             ..BodyDescriptor::new(&self.stage.model.mesh, &layout)
         };
         let shadows = ShadowOptions { resolution: SHADOW_PER_ATLAS * atlas, ..descriptor.shadows };
