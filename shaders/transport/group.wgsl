@@ -4,6 +4,7 @@
 @group(0) @binding(1) var<storage, read> texel_positions: array<vec4f>;
 @group(0) @binding(2) var<storage, read> texel_normals: array<vec4f>;
 @group(0) @binding(3) var<storage, read> texel_irradiance: array<vec4f>;
+// Marks of texels, then their places in the order of sites, then that order.
 @group(0) @binding(4) var<storage, read> marks: array<u32>;
 // Middle, mm, and area, mm².
 @group(0) @binding(5) var<storage, read_write> site_positions: array<vec4f>;
@@ -18,12 +19,13 @@ fn group(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: v
     let first = site * transport.texels_per_site;
     let last = min(first + transport.texels_per_site, transport.texel_count);
     var area = 0.0;
-    for (var k = first; k < last; k++) { area += texel_positions[k].w; }
+    for (var place = first; place < last; place++) { area += texel_positions[texel_at(place)].w; }
     var middle = vec3f(0.0);
     var normal = vec3f(0.0);
     var light = vec3f(0.0);
     var tinted = vec3f(0.0);
-    for (var k = first; k < last; k++) {
+    for (var place = first; place < last; place++) {
+        let k = texel_at(place);
         var weight = 1.0 / f32(last - first);
         if area > 0.0 { weight = texel_positions[k].w / area; }
         middle += weight * texel_positions[k].xyz;
@@ -33,9 +35,13 @@ fn group(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: v
         tinted += irradiance * marked_tint(marks[k]);
     }
     // Where normals cancel, any will do.
-    if dot(normal, normal) < 1e-6 { normal = texel_normals[first].xyz; }
+    if dot(normal, normal) < 1e-6 { normal = texel_normals[texel_at(first)].xyz; }
     if dot(normal, normal) < 1e-6 { normal = vec3f(0.0, 1.0, 0.0); }
     site_positions[site] = vec4f(middle, area);
     site_normals[site] = vec4f(normal, 0.0);
     site_lights[site] = SiteLight(vec4f(light, 0.0), vec4f(select(vec3f(1.0), tinted / light, light > vec3f(0.0)), 0.0));
+}
+
+fn texel_at(place: u32) -> u32 {
+    return marks[2u * transport.texel_count + place];
 }

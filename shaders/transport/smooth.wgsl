@@ -7,6 +7,7 @@
 @group(0) @binding(4) var<storage, read> site_exitance: array<vec4f>;
 @group(0) @binding(5) var<storage, read> texel_positions: array<vec4f>;
 @group(0) @binding(6) var<storage, read> texel_normals: array<vec4f>;
+// Marks of texels, then their places in the order of sites.
 @group(0) @binding(7) var<storage, read> marks: array<u32>;
 @group(0) @binding(8) var<storage, read_write> exitance: array<vec4f>;
 
@@ -17,7 +18,7 @@ const LEAST_WEIGHT: f32 = 0.05;
 fn smooth_out(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_index) local: u32) {
     let texel = item_index(group, groups, local);
     if texel >= transport.texel_count { return; }
-    let own = texel / transport.texels_per_site;
+    let own = marks[transport.texel_count + texel] / transport.texels_per_site;
     if transport.texels_per_site == 1u {
         exitance[texel] = vec4f(site_exitance[own].rgb * marked_tint(marks[texel]), 0.0);
         return;

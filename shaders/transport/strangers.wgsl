@@ -7,6 +7,7 @@
 @group(0) @binding(4) var<storage, read> site_exitance: array<vec4f>;
 @group(0) @binding(5) var<storage, read> texel_positions: array<vec4f>;
 @group(0) @binding(6) var<storage, read> texel_normals: array<vec4f>;
+// Marks of texels, then their places in the order of sites.
 @group(0) @binding(7) var<storage, read> marks: array<u32>;
 @group(0) @binding(8) var<storage, read_write> exitance: array<vec4f>;
 
@@ -18,7 +19,7 @@ fn strangers(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) group
     let texel = item_index(group, groups, local);
     if texel >= transport.texel_count { return; }
     if exitance[texel].w != STRANGE { return; }
-    let own = texel / transport.texels_per_site;
+    let own = marks[transport.texel_count + texel] / transport.texels_per_site;
     let reach = REACH * site_width(site_positions[own].w);
     var plane = plane_at(texel_positions[texel].xyz, texel_normals[texel].xyz, reach);
     var level = transport.top_level;

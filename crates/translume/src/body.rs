@@ -340,7 +340,9 @@ impl Body {
         self.never_prepared = false;
         self.surface_stale = false;
         self.shadows_stale = false;
-        self.refresh_table(queue, frame::diagonal(&corners));
+        if self.solver.transport == Transport::Classic {
+            self.refresh_table(queue, frame::diagonal(&corners));
+        }
         self.place_evaluation(queue, frame, &corners);
         self.refresh_method(device, queue);
         self.refresh_solver(device, queue, frame);

@@ -199,7 +199,7 @@ impl Buffers {
                 device,
                 "marks",
                 BufferUsages::STORAGE | BufferUsages::COPY_DST,
-                &standing.marks,
+                &standing.words(),
             ),
             clusters: gpu::buffer(
                 device,
@@ -326,7 +326,7 @@ pub struct Outputs<'a> {
     pub texel_normals: &'a wgpu::Buffer,
     /// Irradiance E of each texel, RGB.
     pub irradiance: &'a wgpu::Buffer,
-    /// Clusters of every level above the texels.
+    /// Clusters of every level above the texels. With a boundary solver nothing is written here.
     pub clusters: &'a wgpu::Buffer,
     /// Radiant exitance B of each texel, RGB; from [`Method::Dual`](crate::Method::Dual) with the number of kernel evaluations, where a
     /// group's are shared out among its texels; from [`Method::Pattern`](crate::Method::Pattern) with the number of samples that hit a surface.

@@ -9,6 +9,8 @@ pub(crate) struct Standing {
     pub texels: Vec<u32>,
     /// Of each texel, without variation of the medium.
     pub marks: Vec<u32>,
+    /// The texels in the order of the boundary solver's sites.
+    pub order: Vec<u32>,
 }
 
 impl Standing {
@@ -28,7 +30,14 @@ impl Standing {
         }
         let mut marks = vec![Variation::default().mark(); atlas.texels.len()];
         texels.iter().for_each(|texel| marks[*texel as usize] |= VERTEX_MARK);
-        Self { texels, marks }
+        Self { texels, marks, order: atlas.block_order(mesh) }
+    }
+
+    /// The marks, then where each texel is in the order of sites, then that order.
+    pub fn words(&self) -> Vec<u32> {
+        let mut places = vec![0; self.order.len()];
+        self.order.iter().enumerate().for_each(|(place, texel)| places[*texel as usize] = place as u32);
+        [&self.marks[..], &places, &self.order].concat()
     }
 }
 

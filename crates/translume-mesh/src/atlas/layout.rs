@@ -71,8 +71,7 @@ impl Layout {
         stage("ordering")?;
         let rest: Vec<[f32; 3]> =
             unordered.iter().map(|t| t.interpolate(mesh.corners(t.triangle as usize))).collect();
-        let order = order::order(&unordered, &rest, |triangle| charts[triangle as usize]);
-        let texels: Vec<_> = order.into_iter().map(|k| unordered[k as usize]).collect();
+        let texels: Vec<_> = order::kd_order(&rest).into_iter().map(|k| unordered[k as usize]).collect();
         let pixels = gutter::fill(&texels, self.size, self.gutter);
 
         let mut report = figures::measure(mesh, &charted, &fragments);

@@ -1,36 +1,46 @@
-//! The order of texels, so that an implicit 4-ary tree over them has compact nodes.
+//! Orders of texels in which an implicit 4-ary tree over them has compact nodes.
 
-use super::Texel;
+use super::{Atlas, Texel};
+use crate::Mesh;
 use std::collections::BTreeMap;
 
 /// Pixels on a side of a block.
 const SIDE: u16 = 4;
 /// Texels of a block, and of every unit but the last.
 const UNIT: usize = 16;
+/// Of the texels that have to be in whole blocks: what is left over is ragged.
+const LEAST_SHARE: f32 = 0.5;
 
-/// Units of sixteen texels in kd order, and any aligned run of 4^l texels is a subtree. Whole blocks of pixels in one chart are units, and their quarters
-/// the groups of four, so that these close without gaps as squares do; what is left at the edges of charts is grouped in kd order. `points` are the
-/// places of texels, `chart` tells those of a texel's triangle.
-pub(super) fn order(texels: &[Texel], points: &[[f32; 3]], chart: impl Fn(u32) -> u32) -> Vec<u32> {
+impl Atlas {
+    /// All texels in another order, whose groups of four and sixteen close without gaps as squares do: whole blocks of 4 × 4 pixels, quarter by quarter,
+    /// and what is left at the edges of charts in groups of sixteen, in kd order as [`texels`](Self::texels) are, which `mesh` must be that of.
+    /// The same as theirs where less than half of them are in whole blocks.
+    #[must_use]
+    pub fn block_order(&self, mesh: &Mesh) -> Vec<u32> {
+        let place = |texel: &Texel| texel.interpolate(mesh.corners(texel.triangle as usize));
+        block_order(&self.texels, &self.texels.iter().map(place).collect::<Vec<_>>())
+    }
+}
+
+fn block_order(texels: &[Texel], points: &[[f32; 3]]) -> Vec<u32> {
     let mut blocks: BTreeMap<_, Vec<u32>> = BTreeMap::new();
     for (index, texel) in texels.iter().enumerate() {
-        let block = texel.pixel.map(|x| x / SIDE);
-        blocks.entry((block[1], block[0], chart(texel.triangle))).or_default().push(index as u32);
+        blocks.entry(texel.pixel.map(|x| x / SIDE)).or_default().push(index as u32);
     }
     let (mut units, mut left) = (Vec::new(), Vec::new());
     for mut block in blocks.into_values() {
         let is_whole = block.len() == UNIT && block.iter().all(|&k| texels[k as usize].area > 0.0);
         if is_whole {
-            let quarter = |k: &u32| {
-                let [x, y] = texels[*k as usize].pixel.map(|x| x % SIDE / 2);
-                (y, x)
-            };
-            block.sort_by_key(quarter);
+            block.sort_by_key(|&k| texels[k as usize].pixel.map(|x| x % SIDE / 2));
             units.push(block);
         } else {
             left.extend(block);
         }
     }
+    if ((UNIT * units.len()) as f32) < LEAST_SHARE * texels.len() as f32 {
+        return (0..texels.len() as u32).collect();
+    }
+    // They are in kd order.
     left.sort_unstable();
     let places: Vec<_> = left.iter().map(|&k| points[k as usize]).collect();
     let grouped: Vec<u32> = kd_order(&places).into_iter().map(|k| left[k as usize]).collect();
@@ -39,7 +49,7 @@ pub(super) fn order(texels: &[Texel], points: &[[f32; 3]], chart: impl Fn(u32) -
     units.extend(groups.map(<[u32]>::to_vec));
     let middles: Vec<_> = units.iter().map(|unit| middle(unit, points)).collect();
     let mut order: Vec<u32> =
-        kd_order(&middles).into_iter().flat_map(|k| units[k as usize].clone()).collect();
+        kd_order(&middles).into_iter().flat_map(|k| units[k as usize].iter().copied()).collect();
     order.extend(last);
     order
 }
@@ -53,7 +63,7 @@ fn middle(unit: &[u32], points: &[[f32; 3]]) -> [f32; 3] {
 /// The order of `points` by recursive median split along the longest side of the bounding box. The left part of every
 /// split is the largest power of two below the whole, so any aligned run of 4^l entries is one subtree. Ties go to the
 /// smaller index: the order is unique.
-fn kd_order(points: &[[f32; 3]]) -> Vec<u32> {
+pub(super) fn kd_order(points: &[[f32; 3]]) -> Vec<u32> {
     let mut order: Vec<u32> = (0..points.len() as u32).collect();
     split(&mut order, points);
     order
@@ -89,13 +99,13 @@ fn longest_axis(order: &[u32], points: &[[f32; 3]]) -> usize {
 mod tests {
     use super::*;
 
-    fn texel(x: u16, y: u16, triangle: u32) -> Texel {
-        Texel { pixel: [x, y], triangle, barycentric: [0.0; 2], area: 1.0 }
-    }
-
-    /// 21 × 13 pixels, the chart of triangle 1 in the columns from 9 on.
+    /// 21 × 13 pixels, those of one column on the rim of a chart.
     fn texels() -> Vec<Texel> {
-        (0..13).flat_map(|y| (0..21).map(move |x| texel(x, y, u32::from(x >= 9)))).collect()
+        let texel = |x, y| {
+            let area = if x == 9 { 0.0 } else { 1.0 };
+            Texel { pixel: [x, y], triangle: 0, barycentric: [0.0; 2], area }
+        };
+        (0..13).flat_map(|y| (0..21).map(move |x| texel(x, y))).collect()
     }
 
     #[test]
@@ -103,7 +113,7 @@ mod tests {
         let texels = texels();
         let points: Vec<_> =
             texels.iter().map(|t| [f32::from(t.pixel[0]), 0.5 * f32::from(t.pixel[1]), 0.0]).collect();
-        let order = order(&texels, &points, |triangle| triangle);
+        let order = block_order(&texels, &points);
         let mut sorted = order.clone();
         sorted.sort_unstable();
         assert!(sorted.iter().copied().eq(0..texels.len() as u32), "every texel once");
@@ -117,7 +127,7 @@ mod tests {
             (side(0), side(1))
         };
         let whole = order.chunks(UNIT).filter(|unit| unit.len() == UNIT && span(unit) == (4, 4));
-        // Columns 0 to 7 of one chart and 12 to 19 of the other, rows 0 to 11.
+        // Columns 0 to 7 and 12 to 19, rows 0 to 11.
         assert_eq!(whole.clone().count(), 3 * (2 + 2));
         for unit in whole {
             assert!(unit.chunks(4).all(|quarter| span(quarter) == (2, 2)));

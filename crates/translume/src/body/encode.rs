@@ -6,7 +6,7 @@ use crate::stages::Stage;
 use crate::stages::deform::Source;
 use crate::stages::shadow::ShadowView;
 use crate::timings::{FrameTimings, Recording};
-use crate::{Method, Work};
+use crate::{Method, Transport, Work};
 use glam::{Mat4, Vec3};
 
 impl Body {
@@ -125,11 +125,13 @@ impl Body {
                 let size = 16 * u64::from(texels);
                 encoder.copy_buffer_to_buffer(irradiance, 0, &self.buffers.irradiance, 0, size);
             }
-            stages.cluster.encode(
-                &mut Pass::begin(encoder, Stage::Cluster, &mut recording),
-                &self.cluster_group,
-                &self.tree,
-            );
+            if self.solver.transport == Transport::Classic {
+                stages.cluster.encode(
+                    &mut Pass::begin(encoder, Stage::Cluster, &mut recording),
+                    &self.cluster_group,
+                    &self.tree,
+                );
+            }
         }
         let solver = if pending.contains(Stage::Scatter) { self.solver.take() } else { None };
         if let Some(solver) = solver {

@@ -111,6 +111,8 @@ impl Body {
     /// Lets light go through the body so.
     pub(super) fn use_transport(&mut self, transport: Transport) {
         if transport != self.solver.transport {
+            // The solver has no use for clusters.
+            self.pending.insert(StageSet::from_stage_on(Stage::Cluster));
             self.method_stale = true;
             self.solver.transport = transport;
             self.renew_surface();
