@@ -9,6 +9,8 @@ const PRODUCTS: u32 = 16u;
 const DARK: f32 = 1e-3;
 // A direction of which less than this is its own, squared, is rounding.
 const ROUNDING: f32 = 1e-6;
+// What is left of a site's equation that is much, over its fluence.
+const ALONE: f32 = 0.03;
 // What leaves so much more than is given, squared, is no approximation.
 const HOPELESS: f32 = 1e8;
 
@@ -309,8 +311,12 @@ fn advance(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups:
     directions[own] = vec4f(value, 0.0);
     directions[own + 1u] = vec4f(image, 0.0);
     directions[own + 2u] = vec4f(comes, 0.0);
-    fluence[index] = vec4f(value + (given[index].rgb - image) / closure(index), 0.0);
-    fluence[found(index)] = vec4f(max(value, vec3f(0.0)), 0.0);
+    let left = given[index].rgb - image;
+    fluence[index] = vec4f(value + left / closure(index), 0.0);
+    // Steps are those that serve most sites. Of whose own equation much is left then, that is settled with nobody else: it would be a speck.
+    let alone = left / (closure(index) + transport.robin.rgb * sqrt(shapes[index].area * 0.31830988) / (2.0 * transport.diffusion.rgb));
+    let much = smoothstep(vec3f(ALONE), vec3f(4.0 * ALONE), abs(alone) / max(value, vec3f(1e-30)));
+    fluence[found(index)] = vec4f(max(value + much * alone, vec3f(0.0)), 0.0);
     fluence[found_coming_in(index)] = vec4f(max(comes, vec3f(0.0)), 0.0);
 }
 
