@@ -10,7 +10,7 @@ const DARK: f32 = 1e-3;
 // A direction of which less than this is its own, squared, is rounding.
 const ROUNDING: f32 = 1e-6;
 // What is left of a site's equation that is much, over its fluence.
-const ALONE: f32 = 0.03;
+const ALONE: f32 = 0.15;
 // What leaves so much more than is given, squared, is no approximation.
 const HOPELESS: f32 = 1e8;
 
