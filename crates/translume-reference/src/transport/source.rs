@@ -131,16 +131,16 @@ impl Source {
             let sideways = (1.0 - beam.cosine * beam.cosine).max(0.0);
             for (k, channel) in medium.iter().enumerate() {
                 let entered = beam.irradiance[k] * (-channel.extinction * beam.crossed).exp();
-                let rays = Strata::new(channel.extinction * beam.chord);
+                let own = Strata::new(channel.extinction * beam.chord);
                 source.irradiance[k] += entered;
                 (sum, slanted) = (sum + entered, slanted + entered * beam.cosine);
                 let z = Depth::of(channel, thickness).0;
-                for (s, (stratum, depth)) in strata.iter_mut().zip(rays.depths).enumerate() {
+                for (s, (stratum, depth)) in strata.iter_mut().zip(own.depths).enumerate() {
                     let way = depth / channel.extinction;
-                    let power = channel.albedo * entered * rays.share * site.area / COUNT as f64;
+                    let power = channel.albedo * entered * own.share * site.area / COUNT as f64;
                     let fold = beam.cosine / channel.extinction;
                     let sheet = hopf_depth(beam.cosine * depth) / channel.extinction;
-                    source.spread[k] += power * rays.away(s, fold, sheet, z);
+                    source.spread[k] += power * own.away(s, fold, sheet, z);
                     let (total, place, bent, bends) = &mut stratum[k];
                     *total += power;
                     *place += beam.direction * (way * power);
