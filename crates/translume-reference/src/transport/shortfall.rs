@@ -109,21 +109,40 @@ mod tests {
         }
     }
 
+    fn medium(albedo: f64, unit: f64) -> Coefficients {
+        let [sigma_s, sigma_a] = [albedo, 1.0 - albedo].map(|sigma| [unit * sigma; 3]);
+        Coefficients::of(&crate::path::Volume { sigma_s, sigma_a, g: 0.0, ior: 1.0 })[0]
+    }
+
+    /// The worst of all directions of light, over what comes back.
+    fn off(medium: &Coefficients, rho: f64) -> f64 {
+        let h = Chandrasekhar::new(medium.albedo);
+        let one = |cosine: f64| {
+            let all = 1.0 - h.at(cosine) * (1.0 - medium.albedo).sqrt();
+            let found = returned_once(medium.albedo, cosine)
+                + returned_by_diffusion(medium, cosine)
+                + rho * returned_from_below(medium.albedo, cosine);
+            (found / all - 1.0).abs()
+        };
+        cosines().map(one).fold(0.0, f64::max)
+    }
+
     #[test]
     fn a_half_space_returns_what_it_does() {
-        for (albedo, least, most) in [(0.999, 0.8, 1.4), (0.9, 0.4, 0.9), (0.3, 0.0, 0.3)] {
-            let volume =
-                crate::path::Volume { sigma_s: [albedo; 3], sigma_a: [1.0 - albedo; 3], g: 0.0, ior: 1.0 };
-            let medium = Coefficients::of(&volume)[0];
-            let rho = shortfall(&medium);
-            assert!((least..most).contains(&rho), "{albedo}: {rho}");
-            // It does not depend on the unit of length.
-            let volume = crate::path::Volume {
-                sigma_s: [7.0 * albedo; 3],
-                sigma_a: [7.0 * (1.0 - albedo); 3],
-                ..volume
-            };
-            assert!((shortfall(&Coefficients::of(&volume)[0]) - rho).abs() < 1e-9);
+        // By construction on the mean of all directions; of each alone measured 3.7, 4.3 and 2.3 %, and 5.4 to 9.4 % with nothing added.
+        for albedo in [0.999, 0.9, 0.5] {
+            let medium = medium(albedo, 1.0);
+            let [with, without] = [shortfall(&medium), 0.0].map(|rho| off(&medium, rho));
+            assert!(with < 0.05, "{albedo}: {with}");
+            assert!(without > 0.05, "{albedo}: {without}");
+        }
+    }
+
+    #[test]
+    fn it_does_not_depend_on_the_unit_of_length() {
+        for albedo in [0.999, 0.9, 0.3] {
+            let [one, seven] = [1.0, 7.0].map(|unit| shortfall(&medium(albedo, unit)));
+            assert!((one - seven).abs() < 1e-9 && one > 0.0, "{albedo}: {one} {seven}");
         }
     }
 }
