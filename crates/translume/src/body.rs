@@ -245,7 +245,7 @@ impl Body {
     ) -> Result<(), Error> {
         let model = Mat4::from_cols_array_2d(&frame.model);
         frame::validate_model(model)?;
-        let before = self.solver.transport;
+        let before = self.solver.runs;
         self.use_transport(self.transport_for(model));
         let taken = self.take_over(device, queue, frame, model);
         if taken.is_err() {
@@ -340,7 +340,7 @@ impl Body {
         self.never_prepared = false;
         self.surface_stale = false;
         self.shadows_stale = false;
-        if self.solver.transport == Transport::Classic {
+        if self.solver.runs == Transport::Classic {
             self.refresh_table(queue, frame::diagonal(&corners));
         }
         self.place_evaluation(queue, frame, &corners);

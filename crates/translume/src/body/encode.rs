@@ -125,7 +125,7 @@ impl Body {
                 let size = 16 * u64::from(texels);
                 encoder.copy_buffer_to_buffer(irradiance, 0, &self.buffers.irradiance, 0, size);
             }
-            if self.solver.transport == Transport::Classic {
+            if self.solver.runs == Transport::Classic {
                 stages.cluster.encode(
                     &mut Pass::begin(encoder, Stage::Cluster, &mut recording),
                     &self.cluster_group,

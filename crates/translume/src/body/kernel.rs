@@ -75,7 +75,7 @@ impl Body {
             _ => 1.0,
         };
         match self.method.resolved() {
-            Method::Dual { theta } if self.solver.transport == Transport::Classic => Some(narrowing * theta),
+            Method::Dual { theta } if self.solver.runs == Transport::Classic => Some(narrowing * theta),
             _ => None,
         }
     }

@@ -94,10 +94,10 @@ impl Body {
 
     /// What medium and profile say of how light enters and leaves.
     pub(super) fn renew_surface(&mut self) {
-        let boundary = Boundary::new(&self.profile, &self.medium, self.solver.transport);
+        let boundary = Boundary::new(&self.profile, &self.medium, self.solver.runs);
         self.surface_stale |= boundary != self.boundary;
         self.boundary = boundary;
-        self.exit_scale = match self.solver.transport {
+        self.exit_scale = match self.solver.runs {
             Transport::Classic => self.profile.exit_scale(self.medium.ior),
             _ => transport::exit_scale(self.medium.ior),
         };
@@ -123,7 +123,7 @@ impl Body {
     /// How it goes through the body that was prepared last; never [`Transport::Auto`].
     #[must_use]
     pub fn transport_in_use(&self) -> Transport {
-        self.solver.transport
+        self.solver.runs
     }
 
     /// Whether the frame that was prepared last is as right as it gets: a boundary solver comes closer in the few frames after the last change. Always,

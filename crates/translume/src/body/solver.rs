@@ -23,7 +23,7 @@ pub(super) struct Solver {
     /// As it was asked for.
     pub asked: Transport,
     /// What runs; never [`Transport::Auto`].
-    pub transport: Transport,
+    pub runs: Transport,
     memory: Option<TransportMemory>,
     /// Whether the next frame has nothing to begin with.
     is_first: bool,
@@ -42,8 +42,8 @@ pub(super) struct Recorded<'a> {
 impl Solver {
     /// Until a frame is prepared nobody knows how large the body is.
     pub fn new(asked: Transport) -> Self {
-        let transport = if asked == Transport::Auto { Transport::Classic } else { asked };
-        Self { asked, transport, memory: None, is_first: true, unsettled: 0, steps: Steps::default() }
+        let runs = if asked == Transport::Auto { Transport::Classic } else { asked };
+        Self { asked, runs, memory: None, is_first: true, unsettled: 0, steps: Steps::default() }
     }
 
     pub fn bytes(&self) -> u64 {
@@ -52,12 +52,12 @@ impl Solver {
 
     /// Gives back all memory.
     pub fn forget(&mut self) {
-        *self = Self { transport: self.transport, ..Self::new(self.asked) };
+        *self = Self { runs: self.runs, ..Self::new(self.asked) };
     }
 
     /// What the frame that is recorded now does.
     pub fn take(&mut self) -> Option<Recorded<'_>> {
-        let memory = self.memory.as_ref().filter(|_| self.transport != Transport::Classic)?;
+        let memory = self.memory.as_ref().filter(|_| self.runs != Transport::Classic)?;
         let steps = self.steps;
         self.steps.tries = 0;
         let is_first = self.is_first && steps.tries > 0;
@@ -66,7 +66,7 @@ impl Solver {
     }
 
     pub fn is_settled(&self) -> bool {
-        self.transport == Transport::Classic || self.unsettled == 0
+        self.runs == Transport::Classic || self.unsettled == 0
     }
 
     pub fn state(&self) -> Option<&wgpu::Buffer> {
@@ -110,11 +110,11 @@ impl Body {
 
     /// Lets light go through the body so.
     pub(super) fn use_transport(&mut self, transport: Transport) {
-        if transport != self.solver.transport {
+        if transport != self.solver.runs {
             // The solver has no use for clusters.
             self.pending.insert(StageSet::from_stage_on(Stage::Cluster));
             self.method_stale = true;
-            self.solver.transport = transport;
+            self.solver.runs = transport;
             self.renew_surface();
         }
     }
@@ -126,7 +126,7 @@ impl Body {
     }
 
     fn solver_demand(&self) -> Option<Demand> {
-        self.demand_of_a_solver().filter(|_| self.solver.transport != Transport::Classic)
+        self.demand_of_a_solver().filter(|_| self.solver.runs != Transport::Classic)
     }
 
     /// Width of a texel, mm.
@@ -191,7 +191,7 @@ impl Body {
             memory.write(queue, layout, demand.theta);
         }
         let eye = frame.view.as_ref().map(|view| view.camera.in_mm(self.mm_per_unit).1);
-        let gathers = solver.transport == Transport::BoundaryLayers && self.medium.ior == 1.0;
+        let gathers = solver.runs == Transport::BoundaryLayers && self.medium.ior == 1.0;
         let seen = gathers && eye.is_some();
         let elsewhere = eye.is_some_and(|eye| seen && memory.look(queue, eye));
         let looked = elsewhere || seen != solver.steps.seen;
