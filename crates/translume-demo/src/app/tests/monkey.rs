@@ -1,5 +1,6 @@
 //! An hour in the hands of a monkey.
 
+use super::super::App;
 use super::super::panels::Beside;
 use super::window::{SPHERE, Setup, Window, melting, obj};
 use crate::overlay::Overlay;
@@ -153,11 +154,21 @@ impl Monkey {
                 self.window.settle();
             }
         }
-        // Their kernels stay, too: 80 MB in lavapipe.
-        for transport in Transport::ALL.into_iter().rev() {
-            self.window.app_mut().scene.quality.transport = transport.name().to_owned();
-            self.window.settle();
+        // Their kernels stay, too: 80 MB in lavapipe. A solver holds as much as the finest atlas of either picture asks for.
+        for atlas in [128, 64] {
+            let mut scene = self.window.app().scene.clone();
+            scene.quality.atlas = atlas;
+            self.window.app_mut().set(scene);
+            let is_there = |app: &App| app.loaded.as_ref().is_some_and(|loaded| loaded.atlas.size == atlas);
+            self.window.until("the atlas", is_there);
+            for transport in Transport::ALL.into_iter().rev() {
+                self.window.app_mut().scene.quality.transport = transport.name().to_owned();
+                let quality = self.window.app().scene.quality.clone();
+                self.window.app_mut().beside = Beside::Other(quality);
+                self.window.settle();
+            }
         }
+        self.window.app_mut().beside = Beside::Nothing;
         // The court stays, and its device has threads of its own.
         self.window.app_mut().judge();
         self.window.until("the error", |app| app.judged.is_some());
