@@ -40,7 +40,7 @@ fn block_order(texels: &[Texel], points: &[[f32; 3]]) -> Vec<u32> {
     if ((UNIT * units.len()) as f32) < LEAST_SHARE * texels.len() as f32 {
         return (0..texels.len() as u32).collect();
     }
-    // They are in kd order.
+    // Ties go to the smaller index.
     left.sort_unstable();
     let places: Vec<_> = left.iter().map(|&k| points[k as usize]).collect();
     let grouped: Vec<u32> = kd_order(&places).into_iter().map(|k| left[k as usize]).collect();
