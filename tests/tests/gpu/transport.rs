@@ -229,7 +229,7 @@ fn auto_solves_where_light_crosses_the_body() {
         auto.run(&pose.frame(&lights));
     }
     assert_eq!(auto.body.transport_in_use(), Transport::BoundaryLayers);
-    // Two frames that begin with nothing: measured .1 %.
+    // Two frames that begin with nothing: measured .03 %.
     holds(at_most("back again", apart(&auto, &auto.exitance(), &solved.exitance()), 0.01));
 
     let chosen = made(Transport::Auto, Profile::DipoleNormalised);
