@@ -73,9 +73,16 @@ fn layer_depth(thickness: f32) -> vec4f {
     return vec4f(depth, dot(depth, vec3f(1.0 / 3.0)));
 }
 
+// What leaves per fluence at a surface of this mean curvature, 1/mm. In a ball r φ is what φ is in a slab, so that its slope is steeper by φ / R than under a
+// plane (Davison and Sykes, Neutron Transport Theory, 1957); around a cavity it is less steep, and around a small one about half.
+fn robin(bulge: f32) -> vec3f {
+    let plane = transport.robin.rgb;
+    return plane + clamp(transport.diffusion.rgb * bulge, -0.5 * plane, plane);
+}
+
 // How much less leaves than the boundary's share of φ, per light that comes in.
-fn mirrored() -> vec3f {
-    return 4.0 * transport.robin.rgb - 1.0;
+fn mirrored(robin: vec3f) -> vec3f {
+    return 4.0 * robin - 1.0;
 }
 
 fn luminance(light: vec3f) -> f32 {

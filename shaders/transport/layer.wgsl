@@ -14,14 +14,18 @@
 // ∫ 2 E₂(z') |z − z'| dz' under an even sky, less the mean distance from its three sheets, at the depth of the value below the surface; mean free paths.
 const SKY_SPREAD: f32 = 0.037;
 
+fn robin_of(site: u32) -> vec3f {
+    return robin(entered[transport.site_count + site].w);
+}
+
 // What leaves by the diffuse law, the same in all directions inside.
 @compute @workgroup_size(64)
 fn diffuse(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_index) local: u32) {
     let index = item_index(group, groups, local);
     if index >= transport.site_count { return; }
-    let robin = transport.robin.rgb;
+    let robin = robin_of(index);
     let comes_in = fluence[2u * transport.site_count + index].rgb;
-    let leaves = robin * fluence[transport.site_count + index].rgb - mirrored() * comes_in;
+    let leaves = robin * fluence[transport.site_count + index].rgb - mirrored(robin) * comes_in;
     site_exitance[index] = vec4f(max(leaves, vec3f(0.0)), 0.0);
 }
 
@@ -43,7 +47,7 @@ fn parabola(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups
     let beam = transport.albedo.rgb * light / (transport.diffusion.rgb * rate);
     own.surface = fluence[transport.site_count + index].rgb + beam;
     let comes_in = fluence[2u * transport.site_count + index].rgb;
-    let flux = transport.robin.rgb * (fluence[transport.site_count + index].rgb - 4.0 * comes_in);
+    let flux = robin_of(index) * (fluence[transport.site_count + index].rgb - 4.0 * comes_in);
     var under = (lit_below[index].rgb - sent_below[index].rgb) / clamp(sent_below[index].w, 0.2, 1.2);
     let slope = flux / transport.diffusion.rgb - beam * rate;
     under -= spread_out(source, light, thickness, depth);

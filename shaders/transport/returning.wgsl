@@ -6,7 +6,7 @@
 @group(0) @binding(3) var<storage, read> shapes: array<Shape>;
 // φ of the solver's trial, then what was found, φ and Γ.
 @group(0) @binding(4) var<storage, read> fluence: array<vec4f>;
-// Irradiance that entered, and how much of the sky the body hides.
+// Irradiance that entered, and how much of the sky the body hides; then, in w, the mean curvature.
 @group(0) @binding(5) var<storage, read> entered: array<vec4f>;
 // B A of each source, then Γ of each site.
 @group(0) @binding(6) var<storage, read_write> leaving: array<vec4f>;
@@ -25,6 +25,10 @@ fn returning_place(site: u32) -> u32 {
     return transport.source_count + site;
 }
 
+fn robin_of(site: u32) -> vec3f {
+    return robin(entered[transport.site_count + site].w);
+}
+
 // Γ follows from what leaves, and that from Γ: from none, so that what the equation makes of a trial is linear in it.
 @compute @workgroup_size(64)
 fn forget(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_index) local: u32) {
@@ -36,7 +40,8 @@ fn forget(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: 
 fn leave(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_index) local: u32) {
     let index = item_index(group, groups, local);
     if index >= transport.site_count { return; }
-    let exitance = transport.robin.rgb * fluence[index].rgb - mirrored() * leaving[returning_place(index)].rgb;
+    let robin = robin_of(index);
+    let exitance = robin * fluence[index].rgb - mirrored(robin) * leaving[returning_place(index)].rgb;
     leaving[index] = vec4f(shapes[index].area * exitance, 0.0);
 }
 
@@ -57,7 +62,7 @@ fn come_in(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups:
     let index = item_index(group, groups, local);
     if index >= transport.site_count { return; }
     let arrives = returning(index, normalize(shapes[index].normal));
-    let own = mirrored() * arrives.w;
+    let own = mirrored(robin_of(index)) * arrives.w;
     leaving[returning_place(index)] = vec4f((arrives.rgb + own * leaving[returning_place(index)].rgb) / (1.0 + own), 0.0);
 }
 
@@ -78,7 +83,7 @@ fn charge_found(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) gr
 
 fn send(index: u32, fluence: vec3f, comes_in: vec3f) {
     let shape = shapes[index];
-    let power = shape.area * transport.robin.rgb * (fluence - 4.0 * comes_in);
+    let power = shape.area * robin_of(index) * (fluence - 4.0 * comes_in);
     // Without absorption φ is the same everywhere: what is in w then tells how much of all directions is body.
     let moment = shape.area * vec4f(transport.diffusion.rgb * fluence, -1.0);
     charges[transport.source_count + index] =

@@ -8,7 +8,8 @@
 @group(0) @binding(5) var<storage, read> nodes: array<Node>;
 @group(0) @binding(6) var<storage, read_write> charges: array<Charge>;
 @group(0) @binding(7) var<storage, read_write> strata: array<Strata>;
-// Of each site irradiance that entered, W/m², and how much of the sky the body hides; then which share of the light of lamps gets there.
+// Of each site irradiance that entered, W/m², and how much of the sky the body hides; then which share of the light of lamps gets there, and the mean
+// curvature, 1/mm.
 @group(0) @binding(8) var<storage, read_write> entered: array<vec4f>;
 
 // Texels over which the surface's curvature is measured.
@@ -79,7 +80,8 @@ fn enter(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: v
     var chord = thickness;
     if dot(direction, normal) > -0.9999 * steepness { chord = first_crossing(position, direction / max(steepness, 1e-6), 0.1 * width, 1.0).t; }
     let spread_out = 0.9 * max(1.0 - steepness * steepness, 0.0);
-    let bend = 0.5 * curvature(index);
+    let bulge = curvature(index);
+    let bend = 0.5 * bulge;
     let deep = max(-dot(normal, direction), 0.0);
     var own: Strata;
     own.direction = direction;
@@ -102,7 +104,7 @@ fn enter(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: v
     charges[index].power = vec4f(power, 0.0);
     entered[index] = vec4f(light, hidden_sky(index, position, normal, width));
     let open = select(vec3f(0.0), (beam + through) / max(unshadowed, vec3f(1e-30)), unshadowed > vec3f(0.0));
-    entered[transport.site_count + index] = vec4f(min(open, vec3f(1.0)), 0.0);
+    entered[transport.site_count + index] = vec4f(min(open, vec3f(1.0)), bulge);
 }
 
 // Mean curvature of the surface about a site, 1/mm, above 0 where it bulges.

@@ -37,14 +37,21 @@ impl Coefficients {
         })
     }
 
+    /// c_G at a surface of this mean curvature, 1/mm. In a ball r φ is what φ is in a slab, so that its slope is steeper by φ / R than under a plane
+    /// (Davison and Sykes 1957); around a cavity it is less steep, and around a small one about half.
+    fn robin_at(&self, bulge: f64) -> f64 {
+        self.robin + (self.diffusion * bulge).clamp(-0.5 * self.robin, self.robin)
+    }
+
     /// What crosses the surface outwards, less what comes in: c_G φ − 4 c_G Γ.
-    pub fn net_flux(&self, fluence: f64, returning: f64) -> f64 {
-        self.robin * (fluence - 4.0 * returning)
+    pub fn net_flux(&self, bulge: f64, fluence: f64, returning: f64) -> f64 {
+        self.robin_at(bulge) * (fluence - 4.0 * returning)
     }
 
     /// What crosses the surface outwards: c_G φ − (4 c_G − 1) Γ.
-    pub fn exitance(&self, fluence: f64, returning: f64) -> f64 {
-        self.robin * fluence - (4.0 * self.robin - 1.0) * returning
+    pub fn exitance(&self, bulge: f64, fluence: f64, returning: f64) -> f64 {
+        let robin = self.robin_at(bulge);
+        robin * fluence - (4.0 * robin - 1.0) * returning
     }
 
     /// Fluence at a distance from a source of unit power: G, 1/mm².

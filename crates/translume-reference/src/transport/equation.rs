@@ -18,6 +18,8 @@ struct Patch {
     disc: Disc,
     /// c_i: the solid angle of the body seen from the site, over 4π.
     closure: f64,
+    /// Mean curvature of the surface, 1/mm, above 0 where it bulges.
+    bulge: f64,
     /// Share of an even sky that the body hides from it.
     occlusion: f64,
     /// Σ A F as the sums have it.
@@ -33,7 +35,8 @@ impl Equation {
     pub fn new(medium: &[Coefficients; 3], rays: &Rays<'_>, sites: &[Site]) -> Self {
         let patch = |site: &Site| {
             let disc = Disc { centre: site.position.into(), normal: site.normal.into(), area: site.area };
-            Patch { disc, closure: 0.5, occlusion: rays.occlusion(site), seen: 0.0 }
+            let bulge = curvature(site, sites);
+            Patch { disc, closure: 0.5, bulge, occlusion: rays.occlusion(site), seen: 0.0 }
         };
         let mut equation = Self { medium: *medium, patches: sites.par_iter().map(patch).collect() };
         let nothing = vec![[0.0; 3]; sites.len()];
@@ -63,13 +66,17 @@ impl Equation {
         self.patches[index].closure
     }
 
+    pub fn bulge(&self, index: usize) -> f64 {
+        self.patches[index].bulge
+    }
+
     /// Σ_j A_j [(c_G φ_j − 4 c_G Γ_j) G + φ_j H] at a point, and −Σ_j A_j H⁰ there, within .2 to 1.2.
     pub fn sums(&self, at: DVec3, fluence: &[[f64; 3]], returning: &[[f64; 3]]) -> ([f64; 3], f64) {
         let (mut sum, mut closure) = ([0.0; 3], 0.0);
         let lit = self.patches.iter().zip(fluence.iter().zip(returning));
         for (patch, (fluence, returning)) in lit.filter(|(patch, _)| patch.disc.area > 0.0) {
             let disc = &patch.disc;
-            let leaving = |k: usize| self.medium[k].net_flux(fluence[k], returning[k]);
+            let leaving = |k: usize| self.medium[k].net_flux(patch.bulge, fluence[k], returning[k]);
             match disc.seen_from(at) {
                 Sight::Far(r) => {
                     let along = disc.normal.dot(disc.centre - at);
@@ -109,10 +116,11 @@ impl Equation {
             return returning;
         }
         for _ in 0..RETURNS {
-            let exitance = |(fluence, returning): (&[f64; 3], &[f64; 3])| -> [f64; 3] {
-                std::array::from_fn(|k| self.medium[k].exitance(fluence[k], returning[k]))
+            let exitance = |(patch, (fluence, returning)): (&Patch, (&[f64; 3], &[f64; 3]))| -> [f64; 3] {
+                std::array::from_fn(|k| self.medium[k].exitance(patch.bulge, fluence[k], returning[k]))
             };
-            let leaving: Vec<[f64; 3]> = fluence.iter().zip(&returning).map(exitance).collect();
+            let lit = self.patches.iter().zip(fluence.iter().zip(&returning));
+            let leaving: Vec<[f64; 3]> = lit.map(exitance).collect();
             let row = |patch: &Patch| {
                 let mut sum = [0.0; 3];
                 if patch.occlusion > 0.0 && patch.seen > 0.0 {
@@ -129,6 +137,28 @@ impl Equation {
         }
         returning
     }
+}
+
+/// Sites over which the surface's curvature is measured.
+const PATCH: usize = 16;
+
+/// Mean curvature of the surface about a site, 1/mm: of those next to it that face its way, Σ n·x over Σ x² about their middle, which is 1/R on a ball.
+fn curvature(site: &Site, sites: &[Site]) -> f64 {
+    let (normal, position) = (DVec3::from(site.normal), DVec3::from(site.position));
+    let faces = |other: &&Site| other.area > 0.0 && normal.dot(other.normal.into()) > 0.0;
+    let mut around: Vec<&Site> = sites.iter().filter(faces).collect();
+    let away = |other: &&Site| position.distance_squared(other.position.into());
+    if around.len() > PATCH {
+        around.select_nth_unstable_by(PATCH, |a, b| away(a).total_cmp(&away(b)));
+        around.truncate(PATCH);
+    }
+    let middle =
+        around.iter().map(|site| DVec3::from(site.position)).sum::<DVec3>() / around.len().max(1) as f64;
+    let sums = around.iter().fold((0.0, 0.0), |(turned, apart), site| {
+        let offset = DVec3::from(site.position) - middle;
+        (turned + offset.dot(site.normal.into()), apart + offset.length_squared())
+    });
+    if sums.1 > 0.0 { sums.0 / sums.1 } else { 0.0 }
 }
 
 /// A F: what of an even light that leaves a disc falls on the middle of another, cos⁺ cos⁺ A / πr².

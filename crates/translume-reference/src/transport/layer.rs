@@ -45,11 +45,11 @@ pub(super) struct Parabola {
 }
 
 impl Parabola {
-    /// `fluence` at the surface and at `depth`, `returning` Γ, `light` irradiance that entered and its cosine.
+    /// `fluence` at the surface and at `depth`, mean curvature and Γ, `light` irradiance that entered and its cosine.
     pub fn new(
         medium: &Coefficients,
         fluence: [f64; 2],
-        returning: f64,
+        (bulge, returning): (f64, f64),
         (irradiance, cosine): (f64, f64),
         Depth(depth): Depth,
         thickness: f64,
@@ -57,7 +57,7 @@ impl Parabola {
         let rate = medium.extinction / cosine.max(0.05);
         let beam = medium.albedo * irradiance / (medium.diffusion * rate);
         let surface = fluence[0] + beam;
-        let flux = medium.net_flux(fluence[0], returning);
+        let flux = medium.net_flux(bulge, fluence[0], returning);
         let mut own = Self { surface, slope: 0.0, curve: 0.0, beam, rate, reach: REACH * depth, thickness };
         if depth * medium.extinction > 1e-3 {
             own.slope = flux / medium.diffusion - beam * rate;
@@ -157,6 +157,7 @@ fn parabolas(solution: &Solution<'_>, index: usize) -> [Parabola; 3] {
         let under = solution.fluence_at(below.to_array())[k] - source.spread[k];
         let fluence = [solution.fluence[index][k], under];
         let light = (source.irradiance[k], source.cosine);
-        Parabola::new(medium, fluence, solution.returning[index][k], light, depth, thickness)
+        let boundary = (solution.equation.bulge(index), solution.returning[index][k]);
+        Parabola::new(medium, fluence, boundary, light, depth, thickness)
     })
 }

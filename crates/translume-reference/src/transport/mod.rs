@@ -160,7 +160,9 @@ impl<'a> Solution<'a> {
     /// Diffuse exitance of a site, W/m²: what crosses the surface outwards, B = c_G φ − (4 c_G − 1) Γ.
     #[must_use]
     pub fn exitance(&self, site: usize) -> [f64; 3] {
-        std::array::from_fn(|k| self.medium[k].exitance(self.fluence[site][k], self.returning[site][k]))
+        let (bulge, fluence, returning) =
+            (self.equation.bulge(site), self.fluence[site], self.returning[site]);
+        std::array::from_fn(|k| self.medium[k].exitance(bulge, fluence[k], returning[k]))
     }
 
     /// How much of the equation is not solved, over what is given, in the norm that the solver lowers.
