@@ -149,6 +149,7 @@ pub const SOURCE: Shader = transport!(
     "shared/ray.wgsl",
     "shared/site_light.wgsl",
     "shared/stratum.wgsl",
+    "shared/surroundings.wgsl",
     "transport/source.wgsl"
 );
 /// What texels send, summed up their tree.

@@ -11,8 +11,9 @@
 // Of each site irradiance that entered, W/m², and how much of the sky the body hides; then which share of the light of lamps gets there, and the mean
 // curvature, 1/mm.
 @group(0) @binding(8) var<storage, read_write> entered: array<vec4f>;
+@group(0) @binding(9) var<storage, read> surroundings: array<Surroundings>;
 
-// Texels over which the surface's curvature is measured.
+// Sites over which the surface's curvature is measured.
 const PATCH: u32 = 16u;
 // Directions of the sky from each site.
 const SKY: u32 = 8u;
@@ -107,21 +108,38 @@ fn enter(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: v
     entered[transport.site_count + index] = vec4f(min(open, vec3f(1.0)), bulge);
 }
 
-// Mean curvature of the surface about a site, 1/mm, above 0 where it bulges.
+// Mean curvature of the surface about a site, 1/mm, above 0 where it bulges: of the sites around it that face its way, Σ n·x over Σ x² about their middle,
+// which is 1/R on a ball.
 fn curvature(index: u32) -> f32 {
+    let single = transport.texels_per_site == 1u;
     let first = index / PATCH * PATCH;
-    let last = min(first + PATCH, transport.site_count);
+    let count = select(surroundings[index].count, min(PATCH, transport.site_count - first), single);
+    let normal = site_normals[index].xyz;
     var middle = vec3f(0.0);
-    for (var k = first; k < last; k++) { middle += site_positions[k].xyz; }
-    middle /= f32(last - first);
+    var faces = 0.0;
+    for (var k = 0u; k < count; k++) {
+        let site = around(index, first, k);
+        if dot(site_normals[site].xyz, normal) <= 0.0 { continue; }
+        middle += site_positions[site].xyz;
+        faces += 1.0;
+    }
+    middle /= max(faces, 1.0);
     var turned = 0.0;
     var apart = 0.0;
-    for (var k = first; k < last; k++) {
-        let offset = site_positions[k].xyz - middle;
-        turned += dot(site_normals[k].xyz, offset);
+    for (var k = 0u; k < count; k++) {
+        let site = around(index, first, k);
+        if dot(site_normals[site].xyz, normal) <= 0.0 { continue; }
+        let offset = site_positions[site].xyz - middle;
+        turned += dot(normalize(site_normals[site].xyz), offset);
         apart += dot(offset, offset);
     }
     return select(0.0, turned / apart, apart > 0.0);
+}
+
+// Where texels are sites, those of the same block.
+fn around(index: u32, first: u32, k: u32) -> u32 {
+    if transport.texels_per_site == 1u { return first + k; }
+    return surroundings[index].sites[k];
 }
 
 // Share of an even sky that the body hides, from a few directions.

@@ -171,6 +171,7 @@ impl TransportMemory {
                     all(&charges),
                     all(&strata),
                     all(&entered),
+                    all(&surroundings),
                 ],
             ),
             merge: bind(
