@@ -41,9 +41,9 @@ struct State {
 @group(0) @binding(4) var<storage, read_write> directions: array<vec4f>;
 @group(0) @binding(5) var<storage, read_write> state: State;
 @group(0) @binding(6) var<storage, read_write> partial: array<vec4f>;
-// φ of the trial, or what the solution leaves of its equation; then the best there is and its Γ.
+// φ of the trial, then the best there is and its Γ.
 @group(0) @binding(7) var<storage, read_write> fluence: array<vec4f>;
-// What is left of each source's equation times its area, or of the trial, from `source_count` on: Γ.
+// Of the trial, from `source_count` on: Γ.
 @group(0) @binding(8) var<storage, read> leaving: array<vec4f>;
 
 var<workgroup> shared_sums: array<vec4f, 64>;
@@ -289,7 +289,7 @@ fn turn() {
     state.next = (state.next + 1u) % DIRECTIONS;
 }
 
-// The solution goes as far along all directions as leaves least.
+// The solution goes as far along all directions as leaves least, and the next trial is what is then left beyond it.
 @compute @workgroup_size(64)
 fn advance(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_index) local: u32) {
     let index = item_index(group, groups, local);
@@ -312,44 +312,12 @@ fn advance(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups:
     directions[own + 1u] = vec4f(image, 0.0);
     directions[own + 2u] = vec4f(comes, 0.0);
     let left = given[index].rgb - image;
-    fluence[index] = vec4f(left, 0.0);
+    fluence[index] = vec4f(value + left / closure(index), 0.0);
     // Steps are those that serve most sites. Of whose own equation much is left then, that is settled with nobody else: it would be a speck.
-    let alone = left / answered(index, shapes[index].area);
+    let alone = left / (closure(index) + transport.robin.rgb * sqrt(shapes[index].area * 0.31830988) / (2.0 * transport.diffusion.rgb));
     let much = smoothstep(vec3f(ALONE), vec3f(4.0 * ALONE), abs(alone) / max(value, vec3f(1e-30)));
     fluence[found(index)] = vec4f(max(value + much * alone, vec3f(0.0)), 0.0);
     fluence[found_coming_in(index)] = vec4f(max(comes, vec3f(0.0)), 0.0);
-}
-
-// What the equation makes of a wave as long as an area is wide: on a plane c (1 + c_G / D √(k² + σ²)), where k = √(π / A), which is also right for what is
-// the same on all of a ball.
-fn answered(site: u32, area: f32) -> vec3f {
-    let wave = 3.14159265 / max(area, 1e-30);
-    let decay = transport.decay.rgb;
-    return closure(site) * (1.0 + transport.robin.rgb / (transport.diffusion.rgb * sqrt(vec3f(wave) + decay * decay)));
-}
-
-// The next trial goes beyond the solution by what is left, each part of it over what the equation makes of one so wide: of a site's, what it has more than
-// its cluster's mean, of that what it has more than the next, and so on up the tree.
-@compute @workgroup_size(64)
-fn try_next(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_index) local: u32) {
-    let index = item_index(group, groups, local);
-    if index >= transport.site_count || state.failed == 1u { return; }
-    let area = shapes[index].area;
-    var left = fluence[index].rgb;
-    var step = left / closure(index);
-    if area > 0.0 {
-        step = vec3f(0.0);
-        var at = index;
-        for (var level = 0u; level < transport.top_level; level++) {
-            let above = transport.sources[(level + 1u) / 4u][(level + 1u) % 4u] + (index >> (2u * (level + 1u)));
-            let mean = leaving[above].rgb / max(shapes[above].area, 1e-30);
-            step += (left - mean) / answered(index, shapes[at].area);
-            left = mean;
-            at = above;
-        }
-        step += left / answered(index, shapes[at].area);
-    }
-    fluence[index] = vec4f(directions[solution(index)].rgb + step, 0.0);
 }
 
 // Nothing that was found on the way to no approximation is kept.

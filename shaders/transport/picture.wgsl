@@ -9,8 +9,9 @@
 @group(0) @binding(6) var<storage, read_write> site_exitance: array<vec4f>;
 
 const PI: f32 = 3.14159265;
-// Parabolas end at this many depths of the value below the surface.
-const REACH: f32 = 2.5;
+// Parabolas end at this many depths of the value below the surface, and no further than this share of a ray.
+const REACH: f32 = 2.0;
+const MOST_OF_RAY: f32 = 0.35;
 // Steps along a ray of view.
 const STEPS: u32 = 12u;
 // A ray that grazes the surface by less runs along it.
@@ -22,13 +23,15 @@ fn depth_along(thickness: f32, cosine: f32, s: vec3f, chord: f32) -> vec3f {
     return cosine * s * (1.0 - short * s / chord);
 }
 
-fn fluence_along(p: Parabola, cosine: f32, s: vec3f, chord: f32) -> vec3f {
-    let reach = REACH * layer_depth(p.thickness).rgb;
-    let depth = min(depth_along(p.thickness, cosine, s, chord), reach);
+// φ at a depth, and what the light that enters there has made less of it.
+fn fluence_at(p: Parabola, depth: vec3f) -> vec3f {
     let shifted = depth - hopf_shift(depth * transport.extinction.rgb) / transport.extinction.rgb;
+    return p.surface + shifted * (p.slope + shifted * p.curve);
+}
+
+fn beam_at(p: Parabola, depth: vec3f) -> vec3f {
     let rate = transport.extinction.rgb / max(p.cosine, 0.05);
-    let beam = transport.albedo.rgb * p.light / (transport.diffusion.rgb * rate);
-    return p.surface + shifted * (p.slope + shifted * p.curve) - beam * left_behind(p.cosine, p.around, depth);
+    return transport.albedo.rgb * p.light / (transport.diffusion.rgb * rate) * left_behind(p.cosine, p.around, depth);
 }
 
 // As seen from the eye: what leaves if all that leaves were as bright as what goes there.
@@ -87,21 +90,46 @@ fn many(sight: Sight) -> vec3f {
     let own = sight.own;
     let other = sight.other;
     let share = 1.0 - exp(-min(extinction * chord, vec3f(80.0)));
-    let least = 1e-3 * max(max(own.surface, other.surface), vec3f(1e-30));
+    let most = vec3f(MOST_OF_RAY * chord);
+    let begin = min(REACH * layer_depth(own.thickness).rgb / sight.cosine, most);
+    let end = chord - min(REACH * layer_depth(other.thickness).rgb / sight.there, most);
+    let near_begin = depth_along(own.thickness, sight.cosine, begin, chord);
+    let near_end = depth_along(own.thickness, sight.cosine, end, chord);
+    let far_begin = depth_along(other.thickness, sight.there, chord - begin, chord);
+    let far_end = depth_along(other.thickness, sight.there, chord - end, chord);
+    var before = max(fluence_at(own, near_begin), vec3f(0.0));
+    var behind = max(fluence_at(other, far_end), vec3f(0.0)) + beam_at(own, near_end);
+    var decay = transport.decay.rgb * sight.cosine;
+    if sight.ends {
+        before += beam_at(other, far_begin);
+        decay = 0.5 * transport.decay.rgb * (sight.cosine + sight.there);
+    }
+    let length = decay * (end - begin);
     var sum = vec3f(0.0);
     for (var k = 0u; k < STEPS; k++) {
         let part = (f32(k) + 0.5) / f32(STEPS);
         let s = min(-log(1.0 - part * share) / extinction, vec3f(chord));
-        var value = fluence_along(own, sight.cosine, s, chord);
+        let near = depth_along(own.thickness, sight.cosine, s, chord);
+        let whole = fluence_at(own, min(near, near_begin));
+        let from_own = beam_at(own, near);
+        var value = whole * exp(-decay * max(s - begin, vec3f(0.0))) - from_own;
         if sight.ends {
-            var y = s / chord;
-            y = y * y * (3.0 - 2.0 * y);
-            let back = fluence_along(other, sight.there, vec3f(chord) - s, chord);
-            value = exp(log(max(value, least)) * (1.0 - y) + log(max(back, least)) * y);
+            let far = depth_along(other.thickness, sight.there, chord - s, chord);
+            let from_other = beam_at(other, far);
+            let way = (s - begin) / (end - begin);
+            let between = before * rising(1.0 - way, length) + behind * rising(way, length) - from_own - from_other;
+            let back = fluence_at(other, far) - from_other;
+            value = select(select(between, back, s >= end), whole - from_own, s <= begin);
         }
-        sum += value;
+        sum += max(value, vec3f(0.0));
     }
     return transport.albedo.rgb / (4.0 * PI) * share * sum / f32(STEPS);
+}
+
+// sinh(y·length) / sinh(length): where there are no sources φ between two places is that of the way from either.
+fn rising(y: vec3f, length: vec3f) -> vec3f {
+    let x = max(length, vec3f(1e-3));
+    return exp(-x * (1.0 - y)) * (1.0 - exp(-2.0 * x * y)) / (1.0 - exp(-2.0 * x));
 }
 
 // Where along a ray of view the way to the light is measured, in mean free paths of the channel that sees furthest. In between it is linear.

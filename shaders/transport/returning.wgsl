@@ -45,13 +45,6 @@ fn leave(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: v
     leaving[index] = vec4f(shapes[index].area * exitance, 0.0);
 }
 
-// What the solution leaves of each site's equation, to be summed up, too.
-@compute @workgroup_size(64)
-fn leave_rest(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_index) local: u32) {
-    let index = item_index(group, groups, local);
-    if index < transport.site_count { leaving[index] = vec4f(shapes[index].area * fluence[index].rgb, 0.0); }
-}
-
 @compute @workgroup_size(64)
 fn merge(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_index) local: u32) {
     let node = item_index(group, groups, local);

@@ -80,7 +80,7 @@ const COARSEST_LEVEL: u32 = 4;
 
 /// Of the texels' tree, that whose nodes are the sites; `texel` is the width of one, mm.
 pub(crate) fn site_level(medium: &Medium, texels: u32, texel: f32, is_hasty: bool) -> u32 {
-    let widest = if is_hasty { WIDEST_SITE_IN_HASTE } else { WIDEST_SITE };
+    let widest = if is_hasty { WIDEST_SITE_IN_HASTE } else { std::env::var("TL_SITE").map_or(WIDEST_SITE, |s| s.parse().unwrap()) };
     let serves = |level: &u32| {
         width_in_paths(medium, texel, *level) <= widest && texels >> (2 * level) >= FEWEST_SITES
     };
@@ -124,7 +124,7 @@ pub(crate) fn layout(medium: &Medium, sites: &Sites, groups: u32, texel: f32) ->
         albedo: row(1, 0.0),
         diffusion: row(2, 1.0),
         decay: row(3, 0.0),
-        robin: [robin, robin, robin, 0.0],
+        robin: [robin, robin, robin, std::env::var("TL_BULGE").map_or(1.0, |s| s.parse().unwrap())],
         shortfall: [lacking[0], lacking[1], lacking[2], 0.0],
         site_count: tree.counts[0],
         top_level: tree.top_level(),
@@ -150,8 +150,8 @@ pub(crate) fn exit_scale(ior: f32) -> f32 {
 /// What diffusion lacks of light that scatters again, over what scattered once deep inside, so that a half-space in an even light returns Chandrasekhar's
 /// albedo: over √(1 − α') in steps of .05, `translume_reference::transport::shortfall`, against which a test holds it.
 const SHORTFALL: [f64; 21] = [
-    1.7394, 1.5860, 1.4612, 1.3510, 1.2471, 1.1455, 1.0443, 0.9436, 0.8440, 0.7466, 0.6526, 0.5628, 0.4780,
-    0.3988, 0.3253, 0.2577, 0.1959, 0.1396, 0.0886, 0.0425, 0.0,
+    1.4655, 1.4241, 1.3593, 1.2771, 1.1830, 1.0818, 0.9776, 0.8736, 0.7723, 0.6754, 0.5840, 0.4990, 0.4205,
+    0.3485, 0.2829, 0.2234, 0.1695, 0.1208, 0.0767, 0.0369, 0.0,
 ];
 
 fn shortfall(albedo: f64) -> f64 {

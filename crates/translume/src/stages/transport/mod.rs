@@ -49,7 +49,6 @@ pub(crate) struct TransportStage {
     sent_below: [ComputePipeline; 2],
     forget: ComputePipeline,
     leave: ComputePipeline,
-    leave_rest: ComputePipeline,
     merge_leaving: ComputePipeline,
     come_in: ComputePipeline,
     charge: ComputePipeline,
@@ -77,7 +76,6 @@ struct Krylov {
     project_residual: ComputePipeline,
     weigh_residual: ComputePipeline,
     advance: ComputePipeline,
-    try_next: ComputePipeline,
     give_up: ComputePipeline,
 }
 
@@ -159,7 +157,6 @@ impl TransportStage {
             sent_below: sum(false, true),
             forget: pipeline(&layouts.returning, &returning, "forget"),
             leave: pipeline(&layouts.returning, &returning, "leave"),
-            leave_rest: pipeline(&layouts.returning, &returning, "leave_rest"),
             merge_leaving: pipeline(&layouts.returning, &returning, "merge"),
             come_in: pipeline(&layouts.returning, &returning, "come_in"),
             charge: pipeline(&layouts.returning, &returning, "charge"),
@@ -177,7 +174,6 @@ impl TransportStage {
                 project_residual: pipeline(&layouts.krylov, &krylov, "project_residual"),
                 weigh_residual: pipeline(&layouts.krylov, &krylov, "weigh_residual"),
                 advance: pipeline(&layouts.krylov, &krylov, "advance"),
-                try_next: pipeline(&layouts.krylov, &krylov, "try_next"),
                 give_up: pipeline(&layouts.krylov, &krylov, "give_up"),
             },
             diffuse: pipeline(&layouts.layer, &layer, "diffuse"),
@@ -192,7 +188,7 @@ impl TransportStage {
 
     /// Tries of a frame.
     pub fn tries(is_first: bool) -> u32 {
-        if is_first { COLD } else { WARM }
+        if is_first { std::env::var("TL_COLD").map_or(COLD, |s| s.parse().unwrap()) } else { WARM }
     }
 
     pub fn encode(&self, pass: &mut Pass<'_>, memory: &TransportMemory, steps: Steps) {
@@ -215,7 +211,6 @@ impl TransportStage {
             frame.each(pass, &krylov.adopt, &memory.krylov);
             frame.minimise(pass);
             for _ in 0..steps.tries {
-                frame.try_next(pass);
                 frame.apply(pass);
                 frame.each(pass, &krylov.take, &memory.krylov);
                 frame.groups(pass, &krylov.project_direction);
@@ -290,14 +285,6 @@ impl<'a> Recorder<'a> {
         pass.dispatch_workgroups(1, 1);
     }
 
-    /// From what the solution leaves.
-    fn try_next(&self, pass: &mut Pass<'_>) {
-        let (stage, group) = (self.stage, &self.memory.returning);
-        self.each_of(pass, &stage.leave_rest, group);
-        self.up(pass, group, |_| &stage.merge_leaving);
-        self.each(pass, &stage.krylov.try_next, &self.memory.krylov);
-    }
-
     /// What the equation makes of the trial.
     fn apply(&self, pass: &mut Pass<'_>) {
         let (stage, group) = (self.stage, &self.memory.returning);
@@ -324,7 +311,7 @@ impl<'a> Recorder<'a> {
         pass.dispatch(self.tree.counts[0]);
     }
 
-    /// The least residual that the directions leave.
+    /// The least residual that the directions leave, and the next trial.
     fn minimise(&self, pass: &mut Pass<'_>) {
         let krylov = &self.stage.krylov;
         self.groups(pass, &krylov.project_residual);
