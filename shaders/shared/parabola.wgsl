@@ -11,10 +11,11 @@ struct Parabola {
     around: f32,
     // Share of the light of lamps that gets there.
     open: vec3f,
-    padding0: f32,
+    // Mean curvature of the surface, 1/mm.
+    bulge: f32,
     // Irradiance of that light.
     light: vec3f,
-    padding1: f32,
+    padding0: f32,
 }
 
 // How much is left at a depth of what light that enters leaves behind at the surface: e^−σ_t z/μ₀, and 3 E₄(σ_t z) of an even sky, by two exponentials

@@ -150,6 +150,7 @@ pub const SOURCE: Shader = transport!(
     "shared/site_light.wgsl",
     "shared/stratum.wgsl",
     "shared/surroundings.wgsl",
+    "shared/sky_way.wgsl",
     "transport/source.wgsl"
 );
 /// What texels send, summed up their tree.
@@ -194,6 +195,7 @@ pub const PICTURE: Shader = transport!(
     "shared/lights.wgsl",
     "shared/node.wgsl",
     "shared/ray.wgsl",
+    "shared/sky_way.wgsl",
     "transport/picture.wgsl"
 );
 /// Sites → those around each.

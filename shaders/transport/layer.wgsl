@@ -44,6 +44,7 @@ fn parabola(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups
     own.around = source.ways[0].w;
     own.light = light;
     own.open = entered[transport.site_count + index].rgb;
+    own.bulge = entered[transport.site_count + index].w;
     let beam = transport.albedo.rgb * light / (transport.diffusion.rgb * rate);
     own.surface = fluence[transport.site_count + index].rgb + beam;
     let comes_in = fluence[2u * transport.site_count + index].rgb;

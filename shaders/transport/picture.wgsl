@@ -199,10 +199,12 @@ fn arriving_at(index: u32, position: vec3f, width: f32) -> Arriving {
     return Arriving(select(comes.strength * parabolas[entry.site].open, vec3f(0.0), is_dark), entry.t, entry.t < width);
 }
 
-// Of an even sky, used up along a ray of view.
+// Of an even sky, used up along a ray of view: what comes in by this side and by the other.
 fn around(sight: Sight) -> vec3f {
     let own = sight.own;
-    if own.around <= 0.0 { return vec3f(0.0); }
+    let light = own.around * own.light;
+    let light_there = select(vec3f(0.0), sight.other.around * sight.other.light, sight.ends);
+    if all(light + light_there <= vec3f(0.0)) { return vec3f(0.0); }
     let extinction = transport.extinction.rgb;
     let share = 1.0 - exp(-min(extinction * sight.chord, vec3f(80.0)));
     var sum = vec3f(0.0);
@@ -211,9 +213,16 @@ fn around(sight: Sight) -> vec3f {
         let s = min(-log(1.0 - part * share) / extinction, vec3f(sight.chord));
         let deep = vec3f(depth_at(sight, s.x), depth_at(sight, s.y), depth_at(sight, s.z));
         let again = 1.0 + transport.shortfall.rgb * (1.0 - exp(-extinction * deep));
-        // Over a plane: 2 E · E₂(σ_t z), by a fit of the exponential integral within 4 % down to a hundredth.
-        let x = extinction * depth_along(own.thickness, sight.cosine, s, sight.chord);
-        sum += again * exp(-1.2 * x) / (1.0 + 1.028 * pow(max(x, vec3f(1e-12)), vec3f(0.655)));
+        let depth = depth_along(own.thickness, sight.cosine, s, sight.chord);
+        var here = vec3f(0.0);
+        var there = vec3f(0.0);
+        for (var point = 0u; point < SKY_POINTS; point++) {
+            let near = way_out(depth, own.thickness, own.bulge, SKY_COSINES[point]);
+            let far = way_out(own.thickness - depth, own.thickness, own.bulge, SKY_COSINES[point]);
+            here += SKY_WEIGHTS[point] * exp(-min(extinction * near, vec3f(80.0)));
+            there += SKY_WEIGHTS[point] * exp(-min(extinction * far, vec3f(80.0)));
+        }
+        sum += again * (light * here + light_there * there);
     }
-    return own.around * own.light * 2.0 * share * sum / f32(STEPS);
+    return 2.0 * share * sum / f32(STEPS);
 }

@@ -101,7 +101,14 @@ fn enter(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: v
     own.ways[0].w = select(0.0, weight / whole, whole > 0.0);
     own.ways[2].w = thickness;
     strata[index] = own;
-    let power = transport.albedo.rgb * light * share * place.w;
+    // Of an even sky, some crosses in a shorter way than the middle one.
+    var kept = vec3f(1.0);
+    for (var k = 0u; k < SKY_POINTS; k++) {
+        let way = way_out(vec3f(thickness), thickness, bulge, SKY_COSINES[k]);
+        kept -= 2.0 * SKY_COSINES[k] * SKY_WEIGHTS[k] * exp(-min(transport.extinction.rgb * way, vec3f(80.0)));
+    }
+    let used = mix(share, kept, own.ways[0].w);
+    let power = transport.albedo.rgb * light * used * place.w;
     charges[index].power = vec4f(power, 0.0);
     entered[index] = vec4f(light, hidden_sky(index, position, normal, width));
     let open = select(vec3f(0.0), (beam + through) / max(unshadowed, vec3f(1e-30)), unshadowed > vec3f(0.0));

@@ -385,9 +385,9 @@ pub(crate) struct ParabolaLayout {
     pub curve: [f32; 3],
     pub around: f32,
     pub open: [f32; 3],
-    pub padding_0: f32,
+    pub bulge: f32,
     pub light: [f32; 3],
-    pub padding_1: f32,
+    pub padding: f32,
 }
 
 /// Where the solver is.
