@@ -77,7 +77,7 @@ fn layer_depth(thickness: f32) -> vec4f {
 // plane (Davison and Sykes, Neutron Transport Theory, 1957); around a cavity it is less steep, and around a small one about half.
 fn robin(bulge: f32) -> vec3f {
     let plane = transport.robin.rgb;
-    return plane + clamp(transport.robin.w * transport.diffusion.rgb * bulge, -0.5 * plane, plane);
+    return plane + clamp(transport.diffusion.rgb * bulge, -0.5 * plane, plane);
 }
 
 // How much less leaves than the boundary's share of φ, per light that comes in.

@@ -80,7 +80,7 @@ const COARSEST_LEVEL: u32 = 4;
 
 /// Of the texels' tree, that whose nodes are the sites; `texel` is the width of one, mm.
 pub(crate) fn site_level(medium: &Medium, texels: u32, texel: f32, is_hasty: bool) -> u32 {
-    let widest = if is_hasty { WIDEST_SITE_IN_HASTE } else { std::env::var("TL_SITE").map_or(WIDEST_SITE, |s| s.parse().unwrap()) };
+    let widest = if is_hasty { WIDEST_SITE_IN_HASTE } else { WIDEST_SITE };
     let serves = |level: &u32| {
         width_in_paths(medium, texel, *level) <= widest && texels >> (2 * level) >= FEWEST_SITES
     };
@@ -124,7 +124,7 @@ pub(crate) fn layout(medium: &Medium, sites: &Sites, groups: u32, texel: f32) ->
         albedo: row(1, 0.0),
         diffusion: row(2, 1.0),
         decay: row(3, 0.0),
-        robin: [robin, robin, robin, std::env::var("TL_BULGE").map_or(1.0, |s| s.parse().unwrap())],
+        robin: [robin, robin, robin, 0.0],
         shortfall: [lacking[0], lacking[1], lacking[2], 0.0],
         site_count: tree.counts[0],
         top_level: tree.top_level(),

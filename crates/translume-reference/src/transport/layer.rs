@@ -107,7 +107,8 @@ impl Parabola {
             let way = (s - begin) / (end - begin);
             from * between.rising(1.0 - way) + to * between.rising(way) - own - other.beam(back(s))
         };
-        medium.albedo / (4.0 * PI) * share * (0..STEPS).map(|k| step(k).max(0.0)).sum::<f64>() / f64::from(STEPS)
+        medium.albedo / (4.0 * PI) * share * (0..STEPS).map(|k| step(k).max(0.0)).sum::<f64>()
+            / f64::from(STEPS)
     }
 }
 

@@ -59,7 +59,8 @@ fn returned_by_diffusion(medium: &Coefficients, cosine: f64) -> f64 {
     let further = |k: usize| strata.away(k, fold, depths[k], depth.0) - (depth.0 - depths[k]).abs();
     let spread = (0..depths.len()).map(further).sum::<f64>() / depths.len() as f64;
     let below = fluence(depth.0) - 0.5 * medium.albedo * spread / medium.diffusion;
-    let parabola = Parabola::new(medium, [fluence(0.0), below], (0.0, 0.0), (1.0, cosine), depth, f64::INFINITY);
+    let parabola =
+        Parabola::new(medium, [fluence(0.0), below], (0.0, 0.0), (1.0, cosine), depth, f64::INFINITY);
     let leaving =
         |mu: f64| 2.0 * std::f64::consts::PI * mu * parabola.radiance(medium, None, mu, f64::INFINITY);
     cosines().map(leaving).sum::<f64>() / f64::from(STEPS)

@@ -121,7 +121,7 @@ impl Body {
 
     fn demand_of_a_solver(&self) -> Option<Demand> {
         let Method::Dual { theta } = self.method.resolved() else { return None };
-        let theta = if matches!(self.method, Method::Within { .. }) { std::env::var("TL_NARROW").map_or(NARROWING, |s| s.parse::<f32>().unwrap()) * theta } else { theta };
+        let theta = if matches!(self.method, Method::Within { .. }) { NARROWING * theta } else { theta };
         Some(Demand { list_entries: self.list_entries, theta, evaluate: Evaluate::PerTexel })
     }
 

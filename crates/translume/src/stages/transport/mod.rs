@@ -188,7 +188,7 @@ impl TransportStage {
 
     /// Tries of a frame.
     pub fn tries(is_first: bool) -> u32 {
-        if is_first { std::env::var("TL_COLD").map_or(COLD, |s| s.parse().unwrap()) } else { WARM }
+        if is_first { COLD } else { WARM }
     }
 
     pub fn encode(&self, pass: &mut Pass<'_>, memory: &TransportMemory, steps: Steps) {
