@@ -30,8 +30,9 @@ fn near(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: ve
                 continue;
             }
         } else {
-            let is_near = distance(site_positions[node].xyz, position) < reach && dot(site_normals[node].xyz, normal) > 0.0;
-            if is_near && count < MOST_NEAR {
+            let place = site_positions[node];
+            let is_near = distance(place.xyz, position) < reach && dot(site_normals[node].xyz, normal) > 0.0;
+            if is_near && place.w > 0.0 && count < MOST_NEAR {
                 surroundings[site].sites[count] = node;
                 count += 1u;
             }

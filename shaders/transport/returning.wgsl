@@ -92,7 +92,6 @@ fn send(index: u32, fluence: vec3f, comes_in: vec3f) {
 
 // Few rays tell: those of the sites around that face the same way, too.
 fn hidden_around(index: u32) -> f32 {
-    if transport.texels_per_site == 1u { return entered[index].w; }
     var sum = 0.0;
     var weights = 0.0;
     for (var k = 0u; k < surroundings[index].count; k++) {

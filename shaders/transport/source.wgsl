@@ -13,8 +13,6 @@
 @group(0) @binding(8) var<storage, read_write> entered: array<vec4f>;
 @group(0) @binding(9) var<storage, read> surroundings: array<Surroundings>;
 
-// Sites over which the surface's curvature is measured.
-const PATCH: u32 = 16u;
 // Directions of the sky from each site.
 const SKY: u32 = 8u;
 // Share of a lamp's light from which on nothing is in its way.
@@ -118,35 +116,19 @@ fn enter(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: v
 // Mean curvature of the surface about a site, 1/mm, above 0 where it bulges: of the sites around it that face its way, Σ n·x over Σ x² about their middle,
 // which is 1/R on a ball.
 fn curvature(index: u32) -> f32 {
-    let single = transport.texels_per_site == 1u;
-    let first = index / PATCH * PATCH;
-    let count = select(surroundings[index].count, min(PATCH, transport.site_count - first), single);
-    let normal = site_normals[index].xyz;
+    let count = surroundings[index].count;
     var middle = vec3f(0.0);
-    var faces = 0.0;
-    for (var k = 0u; k < count; k++) {
-        let site = around(index, first, k);
-        if dot(site_normals[site].xyz, normal) <= 0.0 { continue; }
-        middle += site_positions[site].xyz;
-        faces += 1.0;
-    }
-    middle /= max(faces, 1.0);
+    for (var k = 0u; k < count; k++) { middle += site_positions[surroundings[index].sites[k]].xyz; }
+    middle /= f32(max(count, 1u));
     var turned = 0.0;
     var apart = 0.0;
     for (var k = 0u; k < count; k++) {
-        let site = around(index, first, k);
-        if dot(site_normals[site].xyz, normal) <= 0.0 { continue; }
+        let site = surroundings[index].sites[k];
         let offset = site_positions[site].xyz - middle;
         turned += dot(normalize(site_normals[site].xyz), offset);
         apart += dot(offset, offset);
     }
     return select(0.0, turned / apart, apart > 0.0);
-}
-
-// Where texels are sites, those of the same block.
-fn around(index: u32, first: u32, k: u32) -> u32 {
-    if transport.texels_per_site == 1u { return first + k; }
-    return surroundings[index].sites[k];
 }
 
 // Share of an even sky that the body hides, from a few directions.

@@ -60,7 +60,7 @@ fn agrees(model: &Arc<Model>, twin: Medium, medium: Medium, bound: f64) -> Check
     at_most(&what, apart(&fixture, &fixture.exitance(), &exact), bound)
 }
 
-/// Measured 2.1 % on the sphere, whose texels are up to nine mean free paths wide and the twin's discs of another form; and 4.3 % on the creature, whose
+/// Measured 2.1 % on the sphere, whose texels are up to nine mean free paths wide and the twin's discs of another form; and 5.0 % on the creature, whose
 /// thickness and chords come from rays through discs in place of triangles.
 #[test]
 fn exitance_is_that_of_dense_sums() {

@@ -33,9 +33,11 @@ pub(super) struct Equation {
 
 impl Equation {
     pub fn new(medium: &[Coefficients; 3], rays: &Rays<'_>, sites: &[Site]) -> Self {
+        let wide = || sites.iter().map(|site| site.area).filter(|area| *area > 0.0);
+        let mean = wide().sum::<f64>() / wide().count().max(1) as f64;
         let patch = |site: &Site| {
             let disc = Disc { centre: site.position.into(), normal: site.normal.into(), area: site.area };
-            let bulge = curvature(site, sites);
+            let bulge = curvature(site, sites, mean);
             Patch { disc, closure: 0.5, bulge, occlusion: rays.occlusion(site), seen: 0.0 }
         };
         let mut equation = Self { medium: *medium, patches: sites.par_iter().map(patch).collect() };
@@ -139,19 +141,19 @@ impl Equation {
     }
 }
 
-/// Sites over which the surface's curvature is measured.
-const PATCH: usize = 16;
+/// Sites so many of its widths away are around one.
+const REACH: f64 = 2.2;
 
-/// Mean curvature of the surface about a site, 1/mm: of those next to it that face its way, Σ n·x over Σ x² about their middle, which is 1/R on a ball.
-fn curvature(site: &Site, sites: &[Site]) -> f64 {
+/// Mean curvature of the surface about a site, 1/mm: of those around it that face its way, Σ n·x over Σ x² about their middle, which is 1/R on a ball. `mean` is the
+/// area of a site.
+fn curvature(site: &Site, sites: &[Site], mean: f64) -> f64 {
     let (normal, position) = (DVec3::from(site.normal), DVec3::from(site.position));
-    let faces = |other: &&Site| other.area > 0.0 && normal.dot(other.normal.into()) > 0.0;
-    let mut around: Vec<&Site> = sites.iter().filter(faces).collect();
-    let away = |other: &&Site| position.distance_squared(other.position.into());
-    if around.len() > PATCH {
-        around.select_nth_unstable_by(PATCH, |a, b| away(a).total_cmp(&away(b)));
-        around.truncate(PATCH);
-    }
+    let reach = REACH * REACH * site.area.max(mean);
+    let is_around = |other: &&Site| {
+        let faces = other.area > 0.0 && normal.dot(other.normal.into()) > 0.0;
+        faces && position.distance_squared(other.position.into()) < reach
+    };
+    let around: Vec<&Site> = sites.iter().filter(is_around).collect();
     let middle =
         around.iter().map(|site| DVec3::from(site.position)).sum::<DVec3>() / around.len().max(1) as f64;
     let sums = around.iter().fold((0.0, 0.0), |(turned, apart), site| {

@@ -335,14 +335,13 @@ struct Sizes {
     partial: u64,
     parabolas: u64,
     lights: u64,
-    /// Of one where texels are sites.
     surroundings: u64,
     /// Of a vector per site.
     vectors: u64,
 }
 
 impl Sizes {
-    fn new(Sites { tree, level, .. }: &Sites) -> Self {
+    fn new(Sites { tree, .. }: &Sites) -> Self {
         let (sites, sources, nodes) =
             (u64::from(tree.counts[0]), u64::from(tree.sources()), u64::from(tree.clusters()).max(1));
         let of = |size: usize, count: u64| size as u64 * count;
@@ -357,7 +356,7 @@ impl Sizes {
             partial: 16 * PRODUCTS * u64::from(TransportMemory::groups(tree)),
             parabolas: of(size_of::<ParabolaLayout>(), sites),
             lights: of(size_of::<SiteLightLayout>(), sites),
-            surroundings: of(size_of::<SurroundingsLayout>(), if *level > 0 { sites } else { 1 }),
+            surroundings: of(size_of::<SurroundingsLayout>(), sites),
             vectors: 16 * sites,
         }
     }

@@ -196,9 +196,7 @@ impl TransportStage {
         if steps.tries > 0 {
             frame.each(pass, &self.group, &memory.group);
             frame.up(pass, &memory.discs, |level| &self.sites[usize::from(level > 1)]);
-            if memory.sites.level > 0 {
-                frame.each(pass, &self.near, &memory.near);
-            }
+            frame.each(pass, &self.near, &memory.near);
             frame.each(pass, &self.enter, &memory.source);
             frame.each_of(pass, &self.light_of_sites, &memory.merge);
             frame.up(pass, &memory.merge, |_| &self.merge_light);
