@@ -9,9 +9,9 @@ const SKY_WEIGHTS: array<f32, 3> = array<f32, 3>(0.062612, 0.444444, 0.492943);
 fn way_out(depth: vec3f, thickness: f32, bulge: f32, cosine: f32) -> vec3f {
     let curved = max(bulge, 0.0);
     let round = clamp(2.0 - 0.5 * curved * thickness, 0.0, 1.0);
-    let z = min(depth, vec3f((1.0 + round) / max(curved, 1e-20)));
+    let z = clamp(depth, vec3f(0.0), vec3f((1.0 + round) / max(curved, 1e-20)));
     let height = z * max(2.0 - curved * z, vec3f(0.0));
     let along = (1.0 - curved * z) * cosine;
     let root = sqrt(along * along + curved * height);
-    return depth - z + select(height / max(along + root, vec3f(1e-12)), (root - along) / max(curved, 1e-20), along < vec3f(0.0));
+    return max(depth - z, vec3f(0.0)) + select(height / max(along + root, vec3f(1e-12)), (root - along) / max(curved, 1e-20), along < vec3f(0.0));
 }
