@@ -75,7 +75,7 @@ fn layer_depth(thickness: f32) -> vec4f {
 
 // What leaves per fluence at a surface of this mean curvature, 1/mm. In a ball r φ is what φ is in a slab, so that its slope is steeper by φ / R than under a
 // plane (Davison and Sykes, Neutron Transport Theory, 1957); around a cavity it is less steep, and around a small one about half.
-// Balls of less than a mean free path and a half are no matter of diffusion.
+// Balls smaller than a mean free path and a half are no matter of diffusion.
 fn robin(bulge: f32) -> vec3f {
     let plane = transport.robin.rgb;
     return plane + clamp(transport.diffusion.rgb * bulge, -0.5 * plane, 0.5 * plane);

@@ -23,7 +23,7 @@ fn depth_along(thickness: f32, cosine: f32, s: vec3f, chord: f32) -> vec3f {
     return cosine * s * (1.0 - short * s / chord);
 }
 
-// φ at a depth, and what the light that enters there has made less of it.
+// φ at a depth, less the particular solution of light that enters there, and that.
 fn fluence_at(p: Parabola, depth: vec3f) -> vec3f {
     let shifted = depth - hopf_shift(depth * transport.extinction.rgb) / transport.extinction.rgb;
     return p.surface + shifted * (p.slope + shifted * p.curve);

@@ -38,8 +38,8 @@ impl Coefficients {
     }
 
     /// c_G at a surface of this mean curvature, 1/mm. In a ball r φ is what φ is in a slab, so that its slope is steeper by φ / R than under a plane
-    /// (Davison and Sykes 1957); around a cavity it is less steep, and around a small one about half. Balls
-    /// of less than a mean free path and a half are no matter of diffusion.
+    /// (Davison and Sykes 1957); around a cavity it is less steep, and around a small one about half. Balls of less than a mean free path and a half are no
+    /// matter of diffusion.
     fn robin_at(&self, bulge: f64) -> f64 {
         self.robin + (self.diffusion * bulge).clamp(-0.5 * self.robin, 0.5 * self.robin)
     }

@@ -68,7 +68,7 @@ impl Parabola {
         own
     }
 
-    /// φ at a depth, and what the light that enters there has made less of it.
+    /// φ at a depth, less the particular solution of light that enters there, and that.
     fn at(&self, medium: &Coefficients, depth: f64) -> f64 {
         let shifted = depth - hopf_shift(depth * medium.extinction) / medium.extinction;
         self.surface + shifted * (self.slope + shifted * self.curve)
