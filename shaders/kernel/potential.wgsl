@@ -190,7 +190,7 @@ fn distance_square(source: u32, seen: vec4f, place: Place) -> f32 {
     if LIGHT && seen.w > 0.0 {
         let u = strata[source].direction;
         let along = (o.x * u.x + o.y * u.y + o.z * u.z) / max(dot(u, u), 1e-12);
-        r2 = square(beyond(o, -u, clamp(along, vec4f(0.0), ways(strata[source], 2u))));
+        r2 = square(beyond(o, -u, clamp(along, vec4f(0.0), ways(strata[source], STRATA - 1u))));
     }
     return min(r2.x, min(r2.y, r2.z));
 }
@@ -204,7 +204,7 @@ fn moved_to(e: Expansion, before: Place, place: Place) -> Expansion {
     return moved_apart(e, minus(place, before));
 }
 
-// What a source sends, one part after the other: light in three strata, or in one where they are hardly apart, and what the surface sends. A loop, for
+// What a source sends, one part after the other: light in its strata, or in one where they are hardly apart, and what the surface sends. A loop, for
 // software adapters run through every branch.
 struct Parts {
     charge: Charge,
@@ -222,9 +222,7 @@ fn parts(source: u32, d: Places) -> Parts {
         p.mean = all_strata(strata[source]);
         let r2 = square(d);
         let reach = deepest(strata[source]);
-        p.count = select(3u, 1u, reach * reach < SHALLOW * SHALLOW * min(min(r2.x, r2.y), r2.z));
-        let share = 1.0 / f32(p.count);
-        p.charge = Charge(share * p.charge.power, share * p.charge.x, share * p.charge.y, share * p.charge.z);
+        p.count = select(STRATA, 1u, reach * reach < SHALLOW * SHALLOW * min(min(r2.x, r2.y), r2.z));
     }
     return p;
 }
@@ -232,13 +230,18 @@ fn parts(source: u32, d: Places) -> Parts {
 struct Part {
     offset: Places,
     line: Line,
+    charge: Charge,
 }
 
 fn part(p: ptr<function, Parts>, source: u32, d: Places, k: u32) -> Part {
-    if !LIGHT { return Part(d, Line(vec3f(0.0), vec4f(0.0))); }
+    let whole = (*p).charge;
+    if !LIGHT { return Part(d, Line(vec3f(0.0), vec4f(0.0)), whole); }
     let u = (*p).direction;
-    if (*p).count == 1u { return Part(beyond(d, -u, (*p).mean.mean), Line(u, (*p).mean.square)); }
-    return Part(beyond(d, -u, ways(strata[source], k)), Line(u, vec4f(0.0)));
+    let up = shapes[source].normal;
+    if (*p).count == 1u { return Part(beyond(beyond(d, -u, (*p).mean.mean), -up, (*p).mean.rise), Line(u, (*p).mean.square), whole); }
+    let share = SHARES[k];
+    let charge = Charge(share * whole.power, share * whole.x, share * whole.y, share * whole.z);
+    return Part(beyond(beyond(d, -u, ways(strata[source], k)), -up, vec4f(strata[source].rises[k].rgb, 0.0)), Line(u, vec4f(0.0)), charge);
 }
 
 // Adds what a source sends to a group of receivers of this size.
@@ -247,26 +250,31 @@ fn collect(e: ptr<function, Expansion>, source: u32, place: Place, size: f32) {
     var all = parts(source, d);
     for (var k = 0u; k < all.count; k++) {
         let own = part(&all, source, d, k);
-        add(e, all.charge, own.offset, shapes[source], size, own.line);
+        add(e, own.charge, own.offset, shapes[source], size, own.line);
     }
 }
 
-// All strata as one: their mean way, and the mean square of what they are apart.
+// All strata as one: their mean way and rise, and the mean square of what they are apart.
 struct Mean {
     mean: vec4f,
+    rise: vec4f,
     square: vec4f,
 }
 
 fn all_strata(s: Strata) -> Mean {
-    let a = ways(s, 0u);
-    let b = ways(s, 1u);
-    let c = ways(s, 2u);
-    let mean = (a + b + c) / 3.0;
-    return Mean(mean, (a * a + b * b + c * c) / 3.0 - mean * mean);
+    var m: Mean;
+    for (var k = 0u; k < STRATA; k++) {
+        let way = ways(s, k);
+        m.mean += SHARES[k] * way;
+        m.square += SHARES[k] * way * way;
+        m.rise += SHARES[k] * vec4f(s.rises[k].rgb, 0.0);
+    }
+    m.square -= m.mean * m.mean;
+    return m;
 }
 
 fn deepest(s: Strata) -> f32 {
-    return max(s.ways[2].x, max(s.ways[2].y, s.ways[2].z));
+    return max(s.ways[STRATA - 1u].x, max(s.ways[STRATA - 1u].y, s.ways[STRATA - 1u].z));
 }
 
 fn ways(s: Strata, k: u32) -> vec4f {
@@ -279,7 +287,7 @@ fn count_evaluations(e: ptr<function, Expansion>, share: f32) {
 // Depth of the receivers under a texel.
 fn below(texel: u32) -> vec4f {
     if !BELOW { return vec4f(0.0); }
-    return layer_depth(strata[texel].ways[2].w);
+    return layer_depth(strata[texel].ways[1].w);
 }
 
 // What an expansion says of a texel.
@@ -295,7 +303,7 @@ fn arriving(source: u32, texel: u32, receiver: vec3f) -> vec4f {
     var all = parts(source, d);
     for (var k = 0u; k < all.count; k++) {
         let own = part(&all, source, d, k);
-        sum += sent(all.charge, own.offset, shapes[source], own.line);
+        sum += sent(own.charge, own.offset, shapes[source], own.line);
     }
     return sum;
 }

@@ -44,14 +44,21 @@ struct Charge {
     z: vec4f,
 }
 
-// Where light that entered scatters first: so far along a direction, in three strata of equal power.
+// Light that entered scatters first in strata of these shares of its power: what gets far is little, and most of what gets into the shade.
+const STRATA: u32 = 4u;
+const SHARES: array<f32, STRATA> = array<f32, STRATA>(0.4, 0.3, 0.2, 0.1);
+
+// Where that is: so far along a direction, and above that by what Hopf's function makes of its
+// depth.
 struct Strata {
     // Mean direction, inwards; shorter where directions differ.
     direction: vec3f,
     // Mean cosine to the inward normal.
     cosine: f32,
-    // RGB, mm. In w: of the first the share of what entered that comes from all around, of the last the way straight inwards to the other side, mm.
-    ways: array<vec4f, 3>,
+    // RGB, mm. In w: of the first the share of what entered that comes from all around, of the second the way straight inwards to the other side, mm.
+    ways: array<vec4f, STRATA>,
+    // RGB, mm, outwards along the normal.
+    rises: array<vec4f, STRATA>,
 }
 
 fn node_index(level: u32, node: u32) -> u32 {
@@ -64,7 +71,7 @@ fn hopf_shift(depth: vec3f) -> vec3f {
 }
 
 // Depth of the value below the surface, in mean free paths, and no deeper than this share of the way to the other side.
-const LAYER: f32 = 0.6;
+const LAYER: f32 = 0.9;
 const LAYER_SHARE: f32 = 0.5;
 
 // How deep that is, mm; in w the mean.

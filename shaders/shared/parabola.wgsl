@@ -18,9 +18,21 @@ struct Parabola {
     padding0: f32,
 }
 
-// How much is left at a depth of what light that enters leaves behind at the surface: e^−σ_t z/μ₀, and 3 E₄(σ_t z) of an even sky, by two exponentials
-// within .01 down to a mean free path.
-fn left_behind(cosine: f32, around: f32, depth: vec3f) -> vec3f {
-    let x = transport.extinction.rgb * depth;
-    return mix(exp(-x / max(cosine, 0.05)), 0.5 * (exp(-0.9 * x) + exp(-2.1 * x)), around);
+// Optical depth that Hopf's function makes the surface of.
+const SURFACE: f32 = 0.096;
+
+// Minus the particular solution of light that enters at a place, αE/D times the mean way from an optical depth to what scatters deeper, with depths as
+// Hopf's function makes them: of a beam e^−kx, and of an even sky, 2 E₂(x), by two exponentials.
+fn beam_at(p: Parabola, depth: vec3f) -> vec3f {
+    let optical = transport.extinction.rgb * depth;
+    let x = max(optical, vec3f(SURFACE));
+    let shift = hopf_shift(x);
+    let beam = beyond_depth(x, shift, 1.0 / max(p.cosine, 0.05));
+    let sky = 0.3 * beyond_depth(x, shift, 0.9) + 0.7 * beyond_depth(x, shift, 2.1);
+    let above = max(hopf_shift(optical) - optical, vec3f(0.0));
+    return transport.albedo.rgb * p.light / (transport.diffusion.rgb * transport.extinction.rgb) * (mix(beam, sky, p.around) + above);
+}
+
+fn beyond_depth(x: vec3f, shift: vec3f, k: f32) -> vec3f {
+    return exp(-k * x) * (1.0 / k + shift * (3.4 / (k + 3.4)));
 }

@@ -196,6 +196,9 @@ pub const PICTURE: Shader = transport!(
     "shared/node.wgsl",
     "shared/ray.wgsl",
     "shared/sky_way.wgsl",
+    "shared/shape.wgsl",
+    "shared/stratum.wgsl",
+    "transport/twice.wgsl",
     "transport/picture.wgsl"
 );
 /// Sites → those around each.

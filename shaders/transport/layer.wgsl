@@ -11,8 +11,8 @@
 @group(0) @binding(6) var<storage, read_write> parabolas: array<Parabola>;
 @group(0) @binding(7) var<storage, read_write> site_exitance: array<vec4f>;
 
-// ∫ 2 E₂(z') |z − z'| dz' under an even sky, less the mean distance from its three sheets, at the depth of the value below the surface; mean free paths.
-const SKY_SPREAD: f32 = 0.037;
+// ∫ 2 E₂(z') |z − z'| dz' under an even sky, less the mean distance from its sheets, at the depth of the value below the surface; mean free paths.
+const SKY_SPREAD: f32 = 0.044;
 
 fn robin_of(site: u32) -> vec3f {
     return robin(entered[transport.site_count + site].w);
@@ -35,9 +35,8 @@ fn parabola(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups
     if index >= transport.site_count { return; }
     let source = strata[index];
     let light = entered[index].rgb;
-    let thickness = source.ways[2].w;
+    let thickness = source.ways[1].w;
     let depth = layer_depth(thickness).rgb;
-    let rate = transport.extinction.rgb / max(source.cosine, 0.05);
     var own: Parabola;
     own.thickness = thickness;
     own.cosine = source.cosine;
@@ -45,14 +44,13 @@ fn parabola(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups
     own.light = light;
     own.open = entered[transport.site_count + index].rgb;
     own.bulge = entered[transport.site_count + index].w;
-    let beam = transport.albedo.rgb * light / (transport.diffusion.rgb * rate);
-    own.surface = fluence[transport.site_count + index].rgb + beam;
+    own.surface = fluence[transport.site_count + index].rgb + beam_at(own, SURFACE / transport.extinction.rgb);
     let comes_in = fluence[2u * transport.site_count + index].rgb;
     let flux = robin_of(index) * (fluence[transport.site_count + index].rgb - 4.0 * comes_in);
     var under = (lit_below[index].rgb - sent_below[index].rgb) / clamp(sent_below[index].w, 0.2, 1.2);
-    let slope = flux / transport.diffusion.rgb - beam * rate;
+    let slope = (flux - transport.albedo.rgb * light) / transport.diffusion.rgb;
     under -= spread_out(source, light, thickness, depth);
-    let rise = under + beam * left_behind(source.cosine, own.around, depth) - own.surface;
+    let rise = under + beam_at(own, depth + hopf_shift(depth * transport.extinction.rgb) / transport.extinction.rgb) - own.surface;
     let thin = depth * transport.extinction.rgb <= vec3f(1e-3);
     own.slope = select(slope, vec3f(0.0), thin);
     own.curve = select((rise / max(depth, vec3f(1e-20)) - slope) / max(depth, vec3f(1e-20)), vec3f(0.0), thin);
@@ -68,18 +66,18 @@ fn spread_out(source: Strata, light: vec3f, thickness: f32, depth: vec3f) -> vec
     let share = 1.0 - exp(-min(end, vec3f(80.0)));
     let fold = deep / extinction;
     var sum = vec3f(0.0);
-    for (var k = 0u; k < 3u; k++) {
+    for (var k = 0u; k < STRATA; k++) {
         let own = stratum(end, share, k);
-        let sheet = deep * source.ways[k].rgb;
+        let sheet = max(deep * source.ways[k].rgb - source.rises[k].rgb, vec3f(0.0));
         let shift = fold * own.mean - sheet;
         let begin = fold * own.begin - shift;
         let to = fold * own.to - shift;
         let above = max(depth - begin, vec3f(0.0)) / fold;
         let away = 2.0 * fold * (above - (1.0 - exp(-above))) / max(1.0 - exp(-(own.to - own.begin)), vec3f(1e-6)) + sheet - depth;
-        sum += select(vec3f(0.0), away - abs(depth - sheet), (depth > begin) & (depth < to));
+        sum += SHARES[k] * select(vec3f(0.0), away - abs(depth - sheet), (depth > begin) & (depth < to));
     }
     let around = source.ways[0].w;
     let optical = depth * extinction / LAYER;
-    let away = mix(sum / 3.0, SKY_SPREAD * optical * optical / extinction, around);
+    let away = mix(sum, SKY_SPREAD * optical * optical / extinction, around);
     return transport.albedo.rgb * light * share * 0.5 * away / transport.diffusion.rgb;
 }

@@ -38,12 +38,18 @@ fn light(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: v
         whole += weight;
         mean.direction += weight * strata[child].direction;
         mean.cosine += weight * strata[child].cosine;
-        for (var s = 0u; s < 3u; s++) { mean.ways[s] += weight * strata[child].ways[s]; }
+        for (var s = 0u; s < STRATA; s++) {
+            mean.ways[s] += weight * strata[child].ways[s];
+            mean.rises[s] += weight * strata[child].rises[s];
+        }
     }
     let scale = select(0.0, 1.0 / whole, whole > 0.0);
     mean.direction *= scale;
     mean.cosine *= scale;
-    for (var s = 0u; s < 3u; s++) { mean.ways[s] *= scale; }
+    for (var s = 0u; s < STRATA; s++) {
+        mean.ways[s] *= scale;
+        mean.rises[s] *= scale;
+    }
     strata[own] = mean;
 }
 

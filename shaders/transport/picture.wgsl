@@ -7,11 +7,16 @@
 @group(0) @binding(4) var<storage, read> site_normals: array<vec4f>;
 @group(0) @binding(5) var<storage, read> parabolas: array<Parabola>;
 @group(0) @binding(6) var<storage, read_write> site_exitance: array<vec4f>;
+@group(0) @binding(7) var<storage, read> charges: array<Charge>;
+@group(0) @binding(8) var<storage, read> strata: array<Strata>;
+@group(0) @binding(9) var<storage, read> shapes: array<Shape>;
 
 const PI: f32 = 3.14159265;
 // Parabolas end at this many depths of the value below the surface, and no further than this share of a ray.
-const REACH: f32 = 2.0;
+const REACH: f32 = 1.6;
 const MOST_OF_RAY: f32 = 0.35;
+// Where along a ray of view other sites than the one that is seen tell how light is there, mean free paths.
+const ALONG: vec2f = vec2f(0.6, 1.6);
 // Steps along a ray of view.
 const STEPS: u32 = 12u;
 // A ray that grazes the surface by less runs along it.
@@ -27,11 +32,6 @@ fn depth_along(thickness: f32, cosine: f32, s: vec3f, chord: f32) -> vec3f {
 fn fluence_at(p: Parabola, depth: vec3f) -> vec3f {
     let shifted = depth - hopf_shift(depth * transport.extinction.rgb) / transport.extinction.rgb;
     return p.surface + shifted * (p.slope + shifted * p.curve);
-}
-
-fn beam_at(p: Parabola, depth: vec3f) -> vec3f {
-    let rate = transport.extinction.rgb / max(p.cosine, 0.05);
-    return transport.albedo.rgb * p.light / (transport.diffusion.rgb * rate) * left_behind(p.cosine, p.around, depth);
 }
 
 // As seen from the eye: what leaves if all that leaves were as bright as what goes there.
@@ -52,6 +52,9 @@ fn gathered(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups
     var sight: Sight;
     sight.own = parabolas[index];
     sight.other = sight.own;
+    sight.places = ALONG * 3.0 / (transport.extinction.x + transport.extinction.y + transport.extinction.z);
+    sight.first = site_above(index, place.xyz + direction * sight.places.x, normal, sight.places.x < 0.5 * chord);
+    sight.second = site_above(sight.first, place.xyz + direction * sight.places.y, normal, sight.places.y < 0.5 * chord);
     sight.cosine = cosine;
     sight.there = cosine;
     sight.chord = chord;
@@ -60,7 +63,9 @@ fn gathered(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups
         sight.other = parabolas[far.site];
         sight.there = max(dot(normalize(site_normals[far.site].xyz), direction), GRAZING);
     }
-    let radiance = many(sight) + once(sight, place.xyz, direction, width);
+    let share = 1.0 - exp(-min(transport.extinction.rgb * chord, vec3f(80.0)));
+    let twice = transport.shortfall.rgb * transport.albedo.rgb / (4.0 * PI) * share * once_scattered(place.xyz, direction, cosine, chord);
+    let radiance = many(sight) + once(sight, place.xyz, direction, width) + twice;
     site_exitance[index] = vec4f(max(PI * radiance, vec3f(0.0)), 0.0);
 }
 
@@ -68,12 +73,23 @@ fn gathered(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups
 struct Sight {
     own: Parabola,
     other: Parabola,
+    // How far along it is under which other sites, mm.
+    places: vec2f,
+    first: u32,
+    second: u32,
     cosine: f32,
     there: f32,
     // mm.
     chord: f32,
     // Whether the other end is known.
     ends: bool,
+}
+
+// Which site is above a place inside; if that is not to be asked, or there is none, the last one.
+fn site_above(last: u32, place: vec3f, normal: vec3f, is_asked: bool) -> u32 {
+    if !is_asked { return last; }
+    let above = first_crossing(place, normal, 0.0, 1.0).site;
+    return select(above, last, above == NO_SITE);
 }
 
 // How far the surface is from a place along a ray of view, mm.
@@ -97,8 +113,12 @@ fn many(sight: Sight) -> vec3f {
     let near_end = depth_along(own.thickness, sight.cosine, end, chord);
     let far_begin = depth_along(other.thickness, sight.there, chord - begin, chord);
     let far_end = depth_along(other.thickness, sight.there, chord - end, chord);
-    var before = max(fluence_at(own, near_begin), vec3f(0.0));
-    var behind = max(fluence_at(other, far_end), vec3f(0.0)) + beam_at(own, near_end);
+    let first = parabolas[sight.first];
+    let second = parabolas[sight.second];
+    let at_begin = weights(sight, begin);
+    let at_end = weights(sight, end);
+    var before = max(at_begin.own * fluence_at(own, near_begin) + at_begin.first * fluence_at(first, near_begin) + at_begin.second * fluence_at(second, near_begin), vec3f(0.0));
+    var behind = max(fluence_at(other, far_end), vec3f(0.0)) + at_end.own * beam_at(own, near_end) + at_end.first * beam_at(first, near_end) + at_end.second * beam_at(second, near_end);
     var decay = transport.decay.rgb * sight.cosine;
     if sight.ends {
         before += beam_at(other, far_begin);
@@ -110,8 +130,10 @@ fn many(sight: Sight) -> vec3f {
         let part = (f32(k) + 0.5) / f32(STEPS);
         let s = min(-log(1.0 - part * share) / extinction, vec3f(chord));
         let near = depth_along(own.thickness, sight.cosine, s, chord);
-        let whole = fluence_at(own, min(near, near_begin));
-        let from_own = beam_at(own, near);
+        let shallow = min(near, near_begin);
+        let w = weights(sight, s);
+        let whole = w.own * fluence_at(own, shallow) + w.first * fluence_at(first, shallow) + w.second * fluence_at(second, shallow);
+        let from_own = w.own * beam_at(own, near) + w.first * beam_at(first, near) + w.second * beam_at(second, near);
         var value = whole * exp(-decay * max(s - begin, vec3f(0.0))) - from_own;
         if sight.ends {
             let far = depth_along(other.thickness, sight.there, chord - s, chord);
@@ -126,6 +148,19 @@ fn many(sight: Sight) -> vec3f {
     return transport.albedo.rgb / (4.0 * PI) * share * sum / f32(STEPS);
 }
 
+struct Weights {
+    own: vec3f,
+    first: vec3f,
+    second: vec3f,
+}
+
+// How much the sites along a ray of view count so far along it: in between it is linear.
+fn weights(sight: Sight, s: vec3f) -> Weights {
+    let a = clamp(s / sight.places.x, vec3f(0.0), vec3f(1.0));
+    let b = clamp((s - sight.places.x) / (sight.places.y - sight.places.x), vec3f(0.0), vec3f(1.0));
+    return Weights(1.0 - a, a - b, b);
+}
+
 // sinh(y·length) / sinh(length): where there are no sources φ between two places is that of the way from either.
 fn rising(y: vec3f, length: vec3f) -> vec3f {
     let x = max(length, vec3f(1e-3));
@@ -133,8 +168,8 @@ fn rising(y: vec3f, length: vec3f) -> vec3f {
 }
 
 // Where along a ray of view the way to the light is measured, in mean free paths of the channel that sees furthest. In between it is linear.
-const PLACES: u32 = 6u;
-const SPACING: array<f32, 6> = array<f32, 6>(0.0, 0.25, 0.65, 1.3, 2.5, 5.0);
+const PLACES: u32 = 7u;
+const SPACING: array<f32, PLACES> = array<f32, PLACES>(0.0, 0.02, 0.08, 0.25, 0.8, 2.0, 5.0);
 
 // Scattered once, and what diffusion lacks of light that scatters again: none where the first place is at the surface, as in `shortfall.rs`.
 fn once(sight: Sight, position: vec3f, direction: vec3f, width: f32) -> vec3f {
@@ -157,9 +192,7 @@ fn once(sight: Sight, position: vec3f, direction: vec3f, width: f32) -> vec3f {
             if place > 0u {
                 let begins = extinction * optical;
                 let passes = extinction * (s + found.way - optical);
-                let shallow = transmitted(begins + extinction * depth, passes + extinction * (deep - depth));
-                let again = transport.shortfall.rgb * (transmitted(begins, passes) - shallow);
-                sum += 0.5 * (before + found.light) * extinction * (s - way) * (transmitted(begins, passes) + again);
+                sum += 0.5 * (before + found.light) * extinction * (s - way) * transmitted(begins, passes);
             }
             before = found.light;
             way = s;
@@ -167,7 +200,7 @@ fn once(sight: Sight, position: vec3f, direction: vec3f, width: f32) -> vec3f {
             depth = deep;
         }
         // What is left goes on as it was.
-        if way < chord { sum += before * exp(-min(extinction * optical, vec3f(80.0))) * 0.5 * (1.0 + transport.shortfall.rgb); }
+        if way < chord { sum += 0.5 * before * exp(-min(extinction * optical, vec3f(80.0))); }
     }
     return transport.albedo.rgb / (4.0 * PI) * (sum + around(sight));
 }
@@ -211,8 +244,6 @@ fn around(sight: Sight) -> vec3f {
     for (var k = 0u; k < STEPS; k++) {
         let part = (f32(k) + 0.5) / f32(STEPS);
         let s = min(-log(1.0 - part * share) / extinction, vec3f(sight.chord));
-        let deep = vec3f(depth_at(sight, s.x), depth_at(sight, s.y), depth_at(sight, s.z));
-        let again = 1.0 + transport.shortfall.rgb * (1.0 - exp(-extinction * deep));
         let depth = depth_along(own.thickness, sight.cosine, s, sight.chord);
         var here = vec3f(0.0);
         var there = vec3f(0.0);
@@ -222,7 +253,7 @@ fn around(sight: Sight) -> vec3f {
             here += SKY_WEIGHTS[point] * exp(-min(extinction * near, vec3f(80.0)));
             there += SKY_WEIGHTS[point] * exp(-min(extinction * far, vec3f(80.0)));
         }
-        sum += again * (light * here + light_there * there);
+        sum += light * here + light_there * there;
     }
     return 2.0 * share * sum / f32(STEPS);
 }

@@ -87,17 +87,19 @@ fn enter(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: v
     own.cosine = cosines;
     let end = transport.extinction.rgb * chord;
     let share = 1.0 - exp(-min(end, vec3f(80.0)));
-    for (var k = 0u; k < 3u; k++) {
+    for (var k = 0u; k < STRATA; k++) {
         let way = stratum(end, share, k).mean / transport.extinction.rgb;
         let depth = deep * way;
-        // Under a curved surface light that went aside is less deep; and depths are Hopf's.
-        let lifted = depth - clamp(bend * spread_out * way * way, vec3f(0.0), 0.5 * depth);
-        let optical = lifted * transport.extinction.rgb;
-        let shifted = (optical - min(hopf_shift(optical), 0.9 * optical)) / transport.extinction.rgb;
-        own.ways[k] = vec4f(way * shifted / max(depth, vec3f(1e-20)), 0.0);
+        // Under a curved surface light that went aside is less deep than under a plane; of its mean direction that is known of where it is.
+        let lifted = clamp(bend * spread_out * way * way, vec3f(0.0), 0.5 * depth);
+        let sideways = max(steepness * steepness - deep * deep, 0.0);
+        let bent = clamp(bend * sideways * way * way, vec3f(0.0), depth - lifted);
+        let optical = (depth - lifted - bent) * transport.extinction.rgb;
+        own.ways[k] = vec4f(way, 0.0);
+        own.rises[k] = vec4f(lifted + min(hopf_shift(optical), 0.9 * optical) / transport.extinction.rgb, 0.0);
     }
     own.ways[0].w = select(0.0, weight / whole, whole > 0.0);
-    own.ways[2].w = thickness;
+    own.ways[1].w = thickness;
     strata[index] = own;
     // Of an even sky, some crosses in a shorter way than the middle one.
     var kept = vec3f(1.0);

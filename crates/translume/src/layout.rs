@@ -371,7 +371,8 @@ pub(crate) struct ChargeLayout {
 pub(crate) struct StrataLayout {
     pub direction: [f32; 3],
     pub cosine: f32,
-    pub ways: [[f32; 4]; 3],
+    pub ways: [[f32; 4]; 4],
+    pub rises: [[f32; 4]; 4],
 }
 
 /// φ under a texel.

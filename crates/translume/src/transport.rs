@@ -147,11 +147,11 @@ pub(crate) fn exit_scale(ior: f32) -> f32 {
     (1.0 / fresnel::hemispherical_transmittance(ior.into())) as f32
 }
 
-/// What diffusion lacks of light that scatters again, over what scattered once deep inside, so that a half-space in an even light returns Chandrasekhar's
-/// albedo: over √(1 − α') in steps of .05, `translume_reference::transport::shortfall`, against which a test holds it.
+/// What diffusion lacks of light that scattered twice, over that, so that a half-space in an even light returns Chandrasekhar's albedo: over √(1 − α') in
+/// steps of .05, `translume_reference::transport::shortfall`, against which a test holds it.
 const SHORTFALL: [f64; 21] = [
-    1.4655, 1.4241, 1.3593, 1.2771, 1.1830, 1.0818, 0.9776, 0.8736, 0.7723, 0.6754, 0.5840, 0.4990, 0.4205,
-    0.3485, 0.2829, 0.2234, 0.1695, 0.1208, 0.0767, 0.0369, 0.0,
+    0.6375, 0.6264, 0.6048, 0.5768, 0.5452, 0.5119, 0.4784, 0.4455, 0.4140, 0.3841, 0.3562, 0.3302, 0.3062,
+    0.2842, 0.2640, 0.2456, 0.2288, 0.2137, 0.2001, 0.1888, 0.1785,
 ];
 
 fn shortfall(albedo: f64) -> f64 {

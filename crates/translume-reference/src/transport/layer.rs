@@ -1,8 +1,8 @@
 //! Radiance from what is known of φ under the surface.
 //!
 //! L = α'/4π ∫ σ_t e^−σ_t s φ(s) ds along the ray of view inside. φ below a site is a parabola of the depth, through its value and its slope at
-//! the surface (the boundary condition gives that) and its value a little below, less p e^−σ_t z/μ₀, the particular solution of the light that
-//! enters there. A ray is z(s) = μs (1 − βs/L) deep, L its chord and β = 1 − Lμ/thickness, which is exact on a sphere and in a slab. At its other end
+//! the surface (the boundary condition gives that) and its value a little below, less the particular solution of the light that enters there. Further
+//! along the ray that is told by the sites it passes under. A ray is z(s) = μs (1 − βs/L) deep, L its chord and β = 1 − Lμ/thickness, which is exact on a sphere and in a slab. At its other end
 //! φ is that of the site there; between the two, where there are no sources but that light, it is the hyperbola that absorption makes of it.
 
 use glam::DVec3;
@@ -13,12 +13,18 @@ use super::coefficients::{Coefficients, hopf_shift};
 use std::f64::consts::PI;
 
 /// Depth of the value below the surface, mean free paths.
-const DEPTH: f64 = 0.6;
+const DEPTH: f64 = 0.9;
 /// No deeper than this share of the way to the other side.
 const MOST: f64 = 0.5;
 /// Parabolas end at this many depths of that value, and no further than this share of a ray.
-const REACH: f64 = 2.0;
+const REACH: f64 = 1.6;
 const MOST_OF_RAY: f64 = 0.35;
+/// Where along a ray other sites than the one that is seen tell how light is there, mean free paths of the mean of the channels.
+pub(super) const ALONG: [f64; 2] = [0.6, 1.6];
+/// No further than this share of the ray.
+pub(super) const MOST_ALONG: f64 = 0.5;
+/// Optical depth that Hopf's function makes the surface of.
+const SURFACE: f64 = 0.096;
 /// Points of the integral, at midpoints of equal weight.
 const STEPS: u32 = 24;
 
@@ -38,7 +44,7 @@ pub(super) struct Parabola {
     surface: f64,
     slope: f64,
     curve: f64,
-    /// Of the light that enters: p, and σ_t/μ₀.
+    /// Of the light that enters: α' E / D σ_t, and 1/μ₀.
     beam: f64,
     rate: f64,
     reach: f64,
@@ -55,60 +61,94 @@ impl Parabola {
         Depth(depth): Depth,
         thickness: f64,
     ) -> Self {
-        let rate = medium.extinction / cosine.max(0.05);
-        let beam = medium.albedo * irradiance / (medium.diffusion * rate);
-        let surface = fluence[0] + beam;
+        let beam = medium.albedo * irradiance / (medium.diffusion * medium.extinction);
+        let reach = REACH * depth;
+        let mut own = Self {
+            surface: 0.0,
+            slope: 0.0,
+            curve: 0.0,
+            beam,
+            rate: 1.0 / cosine.max(0.05),
+            reach,
+            thickness,
+        };
+        own.surface = fluence[0] + own.beam(medium, SURFACE / medium.extinction);
         let flux = medium.net_flux(bulge, fluence[0], returning);
-        let mut own = Self { surface, slope: 0.0, curve: 0.0, beam, rate, reach: REACH * depth, thickness };
-        if depth * medium.extinction > 1e-3 {
-            own.slope = flux / medium.diffusion - beam * rate;
-            let rise = fluence[1] + beam * (-rate * depth).exp() - surface;
+        let optical = depth * medium.extinction;
+        if optical > 1e-3 {
+            own.slope = (flux - medium.albedo * irradiance) / medium.diffusion;
+            let there = (optical + hopf_shift(optical)) / medium.extinction;
+            let rise = fluence[1] + own.beam(medium, there) - own.surface;
             own.curve = (rise / depth - own.slope) / depth;
         }
         own
     }
 
-    /// φ at a depth, less the particular solution of light that enters there, and that.
+    /// φ at a depth, less the particular solution of light that enters there.
     fn at(&self, medium: &Coefficients, depth: f64) -> f64 {
         let shifted = depth - hopf_shift(depth * medium.extinction) / medium.extinction;
         self.surface + shifted * (self.slope + shifted * self.curve)
     }
 
-    fn beam(&self, depth: f64) -> f64 {
-        self.beam * (-self.rate * depth).exp()
+    /// That, less than 0: α' E / D times the mean way from a depth to what scatters deeper, with depths as Hopf's function makes them.
+    fn beam(&self, medium: &Coefficients, depth: f64) -> f64 {
+        let optical = depth * medium.extinction;
+        let x = optical.max(SURFACE);
+        let way = 1.0 / self.rate + hopf_shift(x) * 3.4 / (self.rate + 3.4);
+        self.beam * ((-self.rate * x).exp() * way + (hopf_shift(optical) - optical).max(0.0))
     }
+}
 
-    /// Radiance at the surface, W/(m² sr); `far` is the site at the other end of the ray, with the cosine there.
-    pub fn radiance(&self, medium: &Coefficients, far: Option<(&Self, f64)>, cosine: f64, chord: f64) -> f64 {
+/// Parabolas in one channel along a ray: of the site that is seen, of those that it passes under so far along it, and of the site at its other end with the
+/// cosine there.
+pub(super) struct Row<'a> {
+    pub own: Parabola,
+    pub along: [(f64, Parabola); ALONG.len()],
+    pub far: Option<(&'a Parabola, f64)>,
+}
+
+impl Row<'_> {
+    /// Radiance at the surface, W/(m² sr).
+    pub fn radiance(&self, medium: &Coefficients, cosine: f64, chord: f64) -> f64 {
         let share = -(-medium.extinction * chord).exp_m1();
-        let near = |s: f64| depth_along(self.thickness, cosine, s, chord);
-        let begin = (self.reach / cosine).min(MOST_OF_RAY * chord);
-        let whole = |s: f64| self.at(medium, near(s));
+        let near = |s: f64| depth_along(self.own.thickness, cosine, s, chord);
+        let begin = (self.own.reach / cosine).min(MOST_OF_RAY * chord);
+        let whole = |s: f64| self.weighted(s, |site| site.at(medium, near(s.min(begin))));
+        let beam = |s: f64| self.weighted(s, |site| site.beam(medium, near(s)));
         let from = whole(begin).max(0.0);
         let step = |k: u32| {
             let part = (f64::from(k) + 0.5) / f64::from(STEPS);
             let s = (-(-part * share).ln_1p() / medium.extinction).min(chord);
-            let own = self.beam(near(s));
-            let Some((other, there)) = far else {
+            let Some((other, there)) = self.far else {
                 let decayed = (-medium.decay * cosine * (s - begin).max(0.0)).exp();
-                return whole(s.min(begin)) * decayed - own;
+                return whole(s) * decayed - beam(s);
             };
             let back = |s: f64| depth_along(other.thickness, there, chord - s, chord);
             let end = chord - (other.reach / there).min(MOST_OF_RAY * chord);
             if s <= begin {
-                return whole(s) - own;
+                return whole(s) - beam(s);
             }
             if s >= end {
-                return other.at(medium, back(s)) - other.beam(back(s));
+                return other.at(medium, back(s)) - other.beam(medium, back(s));
             }
-            let to = other.at(medium, back(end)).max(0.0) + self.beam(near(end));
-            let from = from + other.beam(back(begin));
+            let to = other.at(medium, back(end)).max(0.0) + beam(end);
+            let from = from + other.beam(medium, back(begin));
             let between = Between { length: 0.5 * medium.decay * (cosine + there) * (end - begin) };
             let way = (s - begin) / (end - begin);
-            from * between.rising(1.0 - way) + to * between.rising(way) - own - other.beam(back(s))
+            from * between.rising(1.0 - way) + to * between.rising(way)
+                - beam(s)
+                - other.beam(medium, back(s))
         };
         medium.albedo / (4.0 * PI) * share * (0..STEPS).map(|k| step(k).max(0.0)).sum::<f64>()
             / f64::from(STEPS)
+    }
+
+    /// What the sites along the ray say of a place so far along it: linear in between.
+    fn weighted(&self, s: f64, of: impl Fn(&Parabola) -> f64) -> f64 {
+        let [(first, near), (second, further)] = &self.along;
+        let a = (s / first).clamp(0.0, 1.0);
+        let b = ((s - first) / (second - first)).clamp(0.0, 1.0);
+        (1.0 - a) * of(&self.own) + (a - b) * of(near) + b * of(further)
     }
 }
 
@@ -144,6 +184,8 @@ pub struct Seen {
     pub cosine: f64,
     /// How long the ray is inside from here, mm.
     pub chord: f64,
+    /// So far along it, mm, it passes under these sites; `None` where that is not known.
+    pub along: [(f64, Option<usize>); ALONG.len()],
     /// The site where it comes out at the back, and the cosine there; `None` if that is not known.
     pub far: Option<(usize, f64)>,
 }
@@ -160,15 +202,6 @@ impl<'a> Layers<'a> {
         Self { solution, parabolas: parabolas.collect() }
     }
 
-    /// How far the surface is from a place so far along the ray, mm.
-    pub(super) fn depth_at(&self, seen: &Seen, s: f64) -> f64 {
-        let of = |site: usize| self.solution.thickness[site];
-        let own: f64 = seen.sites.iter().map(|&(site, weight)| weight * of(site)).sum();
-        let near = depth_along(own, seen.cosine, s, seen.chord);
-        let far = seen.far.map(|(site, there)| depth_along(of(site), there, seen.chord - s, seen.chord));
-        far.map_or(near, |far| near.min(far))
-    }
-
     /// Radiance of light that scattered more than once, W/(m² sr).
     #[must_use]
     pub fn radiance(&self, seen: &Seen) -> [f64; 3] {
@@ -176,7 +209,13 @@ impl<'a> Layers<'a> {
             let medium = &self.solution.medium[k];
             let far = seen.far.map(|(index, cosine)| (&self.parabolas[index][k], cosine));
             let each = |&(index, weight): &(usize, f64)| {
-                weight * self.parabolas[index][k].radiance(medium, far, seen.cosine, seen.chord)
+                let mut last = index;
+                let along = seen.along.map(|(s, site)| {
+                    last = site.unwrap_or(last);
+                    (s, self.parabolas[last][k])
+                });
+                let row = Row { own: self.parabolas[index][k], along, far };
+                weight * row.radiance(medium, seen.cosine, seen.chord)
             };
             seen.sites.iter().map(each).sum()
         })

@@ -15,7 +15,8 @@
 //! | `krylov` | its solution in a few applications |
 //! | `layer` | radiance from φ under the surface |
 //! | `single` | light that scattered once |
-//! | `shortfall` | what diffusion lacks where light enters, from the exact half-space |
+//! | `twice` | light that scattered twice, which diffusion lacks some of |
+//! | `shortfall` | how much of it, from the exact half-space |
 //! | `picture` | the camera's picture |
 //!
 //! Three things are ours and make it right with few sites (figures in `docs/method.md`):
@@ -25,8 +26,7 @@
 //! * **Depths are shifted by Hopf's function.** Diffusion extrapolates to zero .7104 mean free paths outside, which holds deep inside; near the
 //!   surface the exact field is that of a shallower depth by .7104 − q(z). By reciprocity that holds for sources as well as for what leaves, and
 //!   a thick slab then lets through what it should within 1 %, where it was 4 % too much.
-//! * **What diffusion lacks is shaped like single scattering**, so that is counted 1 + ρ times, with ρ(α') such that an even half-space returns
-//!   Chandrasekhar's exact albedo.
+//! * **What diffusion lacks is a share of what scattered twice**, ρ(α') such that an even half-space returns Chandrasekhar's exact albedo.
 //!
 //! Lengths are millimetres. The boundary is index-matched or a smooth dielectric; with the latter light leaves by the diffuse law alone.
 
@@ -42,6 +42,7 @@ mod single;
 mod source;
 #[cfg(test)]
 mod tests;
+mod twice;
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -57,7 +58,7 @@ pub use picture::{Tier, picture};
 use rays::Rays;
 use source::Source;
 
-/// ρ: by how much single scattering has to count more, so that a half-space in an even light returns Chandrasekhar's albedo.
+/// ρ: how much of the light that scattered twice diffusion lacks, so that a half-space in an even light returns Chandrasekhar's albedo.
 #[must_use]
 pub fn shortfall(volume: &Volume) -> [f64; 3] {
     Coefficients::of(volume).map(|medium| shortfall::shortfall(&medium))

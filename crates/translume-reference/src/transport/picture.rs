@@ -4,10 +4,11 @@ use glam::DVec3;
 use std::f64::consts::PI;
 use translume_mesh::Atlas;
 
-use super::layer::Seen;
-use super::shortfall::{share, shortfall};
+use super::layer::{ALONG, MOST_ALONG, Seen};
+use super::shortfall::shortfall;
 use super::single::single;
 use super::source::Lamps;
+use super::twice::twice;
 use super::{Layers, Solution};
 use crate::composite::{Camera, Picture, expose, texels_at, view_cosine};
 use crate::dice::Dice;
@@ -88,14 +89,23 @@ impl Eye<'_> {
             let (site, _) = texels_at(self.atlas, &far).max_by(|a, b| a.1.total_cmp(&b.1))?;
             Some((site, normal.dot(direction).max(GRAZING)))
         });
-        let seen = Seen { sites, cosine: cosine.max(GRAZING), chord, far };
+        let normal = DVec3::from(self.surface.normal(hit.triangle, hit.barycentric));
+        let mean = self.solution.medium.iter().map(|channel| channel.extinction).sum::<f64>() / 3.0;
+        let along = ALONG.map(|ways| {
+            let s = ways / mean;
+            let above = (s < MOST_ALONG * chord)
+                .then(|| self.surface.closest_hit((place + direction * s).to_array(), normal.to_array()))
+                .flatten();
+            let site = above.and_then(|above| {
+                texels_at(self.atlas, &above).max_by(|a, b| a.1.total_cmp(&b.1)).map(|(site, _)| site)
+            });
+            (s, site)
+        });
+        let seen = Seen { sites, cosine: cosine.max(GRAZING), chord, along, far };
         let many = layers.radiance(&seen);
+        let once = single(&self.solution.medium, rays, &self.lamps, (ray, &segments), &mut dice);
         // Parts of the ray behind the first are out of the layers' sight.
-        let counts = |k: usize, segment: usize, way: f64| {
-            let depth = if segment == 0 { layers.depth_at(&seen, way) } else { 0.0 };
-            1.0 + share(self.shortfall[k], self.solution.medium[k].extinction * depth)
-        };
-        let once = single(&self.solution.medium, rays, &self.lamps, (ray, &segments), &counts, &mut dice);
-        std::array::from_fn(|k| many[k] + once[k])
+        let twice = twice(self.solution, (place, direction), seen.cosine, chord);
+        std::array::from_fn(|k| many[k] + once[k] + self.shortfall[k] * twice[k])
     }
 }

@@ -1,14 +1,14 @@
 //! What diffusion lacks of light that scatters again, from exact half-spaces.
 //!
-//! Light that scatters twice or thrice close together is no matter of diffusion. An even half-space returns R_H = 1 − H(μ₀) √(1 − α') (Chandrasekhar
-//! 1950, §33), R_1 of it after one scattering, and by the model R_m after more. What is lacking as a function of both directions, R_H − R_1 − R_m, is
-//! nearly even where R_1 rises by a factor of ten towards grazing ones: light that scatters at the surface leaves, and only deeper is it as likely to
-//! scatter again close by. So it is taken to be single scattering times ρ (1 − e^−x), x the optical depth of its place under the nearest surface. Beside
-//! exact slabs of .25 to 16 mean free paths this leaves 1 to 4 % on both sides, where ρ' times single scattering leaves up to 13 %.
+//! Light that scatters twice close together is no matter of diffusion. An even half-space returns R_H = 1 − H(μ₀) √(1 − α') (Chandrasekhar
+//! 1950, §33), R_1 of it after one scattering, R_2 after two, and by the model R_m after more than one. What is lacking, R_H − R_1 − R_m, is the same share
+//! of R_2 within 4 % (at α' = .99, of .15 < μ, μ₀ ≤ 1), and on balls of 2.5 and 5 mean free paths too, beyond the edge of light as well as before it
+//! (four million walks).
 
 use super::coefficients::{Coefficients, hopf_depth};
-use super::layer::{Depth, Parabola};
-use super::source::Strata;
+use super::layer::{ALONG, Depth, Parabola, Row};
+use super::source::{SHARES, Strata};
+use super::twice::effective;
 
 /// Steps of cosines.
 const STEPS: u32 = 32;
@@ -21,7 +21,7 @@ pub(super) fn shortfall(medium: &Coefficients) -> f64 {
         let all = 1.0 - h.at(cosine) * (1.0 - medium.albedo).sqrt();
         let once = returned_once(medium.albedo, cosine);
         lacking += cosine * (all - once - returned_by_diffusion(medium, cosine));
-        again += cosine * returned_from_below(medium.albedo, cosine);
+        again += cosine * returned_twice(medium.albedo, cosine);
     }
     if again > 0.0 { (lacking / again).max(0.0) } else { 0.0 }
 }
@@ -35,15 +35,27 @@ fn returned_once(albedo: f64, cosine: f64) -> f64 {
     0.5 * albedo * (1.0 - cosine * (1.0 / cosine).ln_1p())
 }
 
-/// The same where each place counts 1 − e^−x: α'/2 ∫ μ (1/(μ + μ₀) − 1/(μ + μ₀ + μμ₀)) dμ.
-fn returned_from_below(albedo: f64, cosine: f64) -> f64 {
-    let part = |mu: f64| mu * (1.0 / (mu + cosine) - 1.0 / (mu + cosine + mu * cosine));
-    0.5 * albedo * cosines().map(part).sum::<f64>() / f64::from(STEPS)
+/// R_2, by the strata of both rays: an even sheet of unit power makes φ = E₁(h)/2 at a distance h.
+fn returned_twice(albedo: f64, cosine: f64) -> f64 {
+    let ray = Strata::new(f64::INFINITY);
+    let row = |mu: f64| -> f64 {
+        let pair = |(a, b): (usize, usize)| {
+            let apart = cosine * ray.depths[a] - mu * ray.depths[b];
+            let variance = (cosine * ray.deviation(a)).powi(2) + (mu * ray.deviation(b)).powi(2);
+            SHARES[a] * SHARES[b] * 0.5 * exponential_integral(effective(apart * apart, variance).sqrt())
+        };
+        let pairs = (0..SHARES.len()).flat_map(|a| (0..SHARES.len()).map(move |b| (a, b)));
+        mu * pairs.map(pair).sum::<f64>()
+    };
+    0.5 * albedo * albedo * cosines().map(row).sum::<f64>() / f64::from(STEPS)
 }
 
-/// Share ρ (1 − e^−x) at an optical depth.
-pub(super) fn share(rho: f64, depth: f64) -> f64 {
-    -rho * (-depth).exp_m1()
+/// E₁, by midpoints in ln t.
+fn exponential_integral(x: f64) -> f64 {
+    const POINTS: u32 = 200;
+    let span = (40.0 / x).ln().max(0.0);
+    let point = |k: u32| (-x * (span * (f64::from(k) + 0.5) / f64::from(POINTS)).exp()).exp();
+    (0..POINTS).map(point).sum::<f64>() * span / f64::from(POINTS)
 }
 
 /// R_m: the half-space as the model has it, with its strata and its parabola.
@@ -51,18 +63,18 @@ fn returned_by_diffusion(medium: &Coefficients, cosine: f64) -> f64 {
     let strata = Strata::new(f64::INFINITY);
     let depths = strata.depths.map(|depth| hopf_depth(cosine * depth) / medium.extinction);
     let fluence = |z: f64| {
-        let each = |depth: f64| medium.albedo / depths.len() as f64 * medium.half_space(z, depth);
-        depths.into_iter().map(each).sum::<f64>()
+        let each = |(depth, share): (f64, f64)| medium.albedo * share * medium.half_space(z, depth);
+        depths.into_iter().zip(SHARES).map(each).sum::<f64>()
     };
     let depth = Depth::of(medium, f64::INFINITY);
     let fold = cosine / medium.extinction;
     let further = |k: usize| strata.away(k, fold, depths[k], depth.0) - (depth.0 - depths[k]).abs();
-    let spread = (0..depths.len()).map(further).sum::<f64>() / depths.len() as f64;
+    let spread = (0..depths.len()).map(|k| SHARES[k] * further(k)).sum::<f64>();
     let below = fluence(depth.0) - 0.5 * medium.albedo * spread / medium.diffusion;
     let parabola =
         Parabola::new(medium, [fluence(0.0), below], (0.0, 0.0), (1.0, cosine), depth, f64::INFINITY);
-    let leaving =
-        |mu: f64| 2.0 * std::f64::consts::PI * mu * parabola.radiance(medium, None, mu, f64::INFINITY);
+    let row = Row { own: parabola, along: ALONG.map(|way| (way, parabola)), far: None };
+    let leaving = |mu: f64| 2.0 * std::f64::consts::PI * mu * row.radiance(medium, mu, f64::INFINITY);
     cosines().map(leaving).sum::<f64>() / f64::from(STEPS)
 }
 
@@ -115,27 +127,32 @@ mod tests {
         Coefficients::of(&crate::path::Volume { sigma_s, sigma_a, g: 0.0, ior: 1.0 })[0]
     }
 
-    /// The worst of all directions of light, over what comes back.
-    fn off(medium: &Coefficients, rho: f64) -> f64 {
+    /// What the model returns of light from each direction, over what comes back, less 1; with the cosine.
+    fn off(medium: &Coefficients, rho: f64) -> Vec<(f64, f64)> {
         let h = Chandrasekhar::new(medium.albedo);
         let one = |cosine: f64| {
             let all = 1.0 - h.at(cosine) * (1.0 - medium.albedo).sqrt();
             let found = returned_once(medium.albedo, cosine)
                 + returned_by_diffusion(medium, cosine)
-                + rho * returned_from_below(medium.albedo, cosine);
-            (found / all - 1.0).abs()
+                + rho * returned_twice(medium.albedo, cosine);
+            (cosine, found / all - 1.0)
         };
-        cosines().map(one).fold(0.0, f64::max)
+        cosines().map(one).collect()
     }
 
     #[test]
     fn a_half_space_returns_what_it_does() {
-        // By construction on the mean of all directions; of each alone measured 3.2, 3.4 and 2.0 %, and 8.4, 8.5 and 4.4 % with nothing added.
+        // By construction on the mean of all directions. Of each within 78° measured 1.4, .5 and .3 %, and 9.2, 9.9 and 5.6 % with nothing added; light that
+        // grazes is 7.6, 4.7 and 1.3 % too bright.
         for albedo in [0.999, 0.9, 0.5] {
             let medium = medium(albedo, 1.0);
             let [with, without] = [shortfall(&medium), 0.0].map(|rho| off(&medium, rho));
-            assert!(with < 0.04, "{albedo}: {with}");
-            assert!(without > 0.04, "{albedo}: {without}");
+            let worst = |off: &[(f64, f64)], least: f64| {
+                off.iter().filter(|(cosine, _)| *cosine > least).map(|(_, off)| off.abs()).fold(0.0, f64::max)
+            };
+            assert!(worst(&with, 0.2) < 0.02, "{albedo}: {with:?}");
+            assert!(worst(&with, 0.0) < 0.08, "{albedo}: {with:?}");
+            assert!(worst(&without, 0.2) > 0.05, "{albedo}: {without:?}");
         }
     }
 

@@ -19,19 +19,17 @@ const DIRECTIONS: u32 = 8;
 /// What a ray has left behind dimmer than this is not worth marching.
 const DIM: f64 = 1e-4;
 
-/// Radiance in each channel along a ray through an index-matched body, W/(m² sr); `segments` are its inside parts,
-/// and `counts` what light counts that scatters in a channel, on a part of them, so far along it.
+/// Radiance in each channel along a ray through an index-matched body, W/(m² sr); `segments` are its inside parts.
 pub(super) fn single(
     medium: &[Coefficients; 3],
     rays: &Rays<'_>,
     lamps: &Lamps,
     ((origin, direction), segments): ((DVec3, DVec3), &[[f64; 2]]),
-    counts: &dyn Fn(usize, usize, f64) -> f64,
     dice: &mut Dice,
 ) -> [f64; 3] {
     let mut sum = [0.0; 3];
     let mut before = 0.0;
-    for (segment, [from, to]) in segments.iter().enumerate() {
+    for [from, to] in segments {
         for (k, channel) in medium.iter().enumerate() {
             let left = (-channel.extinction * before).exp();
             let share = -(-channel.extinction * (to - from)).exp_m1();
@@ -44,9 +42,7 @@ pub(super) fn single(
                 let at = origin + direction * (from + way);
                 let light: f64 =
                     lamps.0.iter().map(|lamp| arriving(lamp, rays, channel, (at, k), dice)).sum();
-                sum[k] += left * share / f64::from(STEPS) * channel.albedo / (4.0 * PI)
-                    * light
-                    * counts(k, segment, way);
+                sum[k] += left * share / f64::from(STEPS) * channel.albedo / (4.0 * PI) * light;
             }
         }
         before += to - from;

@@ -1,7 +1,7 @@
 //! Light that entered, as points in the volume.
 //!
-//! Along the refracted ray it is used up exponentially, until the ray leaves the body. Its first scattering is put into strata of equal power, each
-//! a disc of the site's area at the stratum's mean depth. Light from many directions is one such row of discs, at the mean of theirs.
+//! Along the refracted ray it is used up exponentially, until the ray leaves the body. Its first scattering is put into strata, each a disc of the
+//! site's area at the stratum's mean depth. Light from many directions is one such row of discs, at the mean of theirs.
 
 use glam::DVec3;
 
@@ -19,14 +19,20 @@ use crate::path::way::is_lit;
 use crate::rgb::scale;
 
 /// Strata of a ray.
-const COUNT: usize = 3;
+pub(super) const COUNT: usize = 4;
+/// Their shares of the power: what gets far is little, and most of what gets into the shade.
+pub(super) const SHARES: [f64; COUNT] = [0.4, 0.3, 0.2, 0.1];
 
 /// What entered a site.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Source {
     /// Power of each stratum's first scattering in each channel, W/m² mm².
-    power: [[f64; 3]; COUNT],
+    pub power: [[f64; 3]; COUNT],
+    /// Where it scatters, and where that is with depths as Hopf's function makes them.
+    pub scatters: [[DVec3; 3]; COUNT],
     place: [[DVec3; 3]; COUNT],
+    /// Rms depth of each stratum about its mean, mm.
+    pub width: [[f64; 3]; COUNT],
     /// Light that entered, W/m².
     pub irradiance: [f64; 3],
     /// Mean cosine of its directions inside to the normal, inwards; 1 in the dark.
@@ -126,6 +132,7 @@ impl Source {
         let (mut sum, mut slanted) = (0.0, 0.0);
         // Σ power, displacement, curvature · sideways², curvature.
         let mut strata = [[(0.0, DVec3::ZERO, 0.0, 0.0); 3]; COUNT];
+        let mut widths = [[0.0; 3]; COUNT];
         for beam in beams {
             let bend = beam.curvature(thickness);
             let sideways = (1.0 - beam.cosine * beam.cosine).max(0.0);
@@ -137,7 +144,8 @@ impl Source {
                 let z = Depth::of(channel, thickness).0;
                 for (s, (stratum, depth)) in strata.iter_mut().zip(own.depths).enumerate() {
                     let way = depth / channel.extinction;
-                    let power = channel.albedo * entered * own.share * site.area / COUNT as f64;
+                    let power = channel.albedo * entered * own.share * site.area * SHARES[s];
+                    widths[s][k] += power * beam.cosine * own.deviation(s) / channel.extinction;
                     let fold = beam.cosine / channel.extinction;
                     let sheet = hopf_depth(beam.cosine * depth) / channel.extinction;
                     source.spread[k] += power * own.away(s, fold, sheet, z);
@@ -156,16 +164,22 @@ impl Source {
             for (k, &(power, place, bent, bends)) in sums.iter().enumerate() {
                 source.power[stratum][k] = power;
                 source.place[stratum][k] = site.position.into();
+                source.scatters[stratum][k] = site.position.into();
                 if power > 0.0 {
+                    source.width[stratum][k] = widths[stratum][k] / power;
                     let mean = place / power;
                     let deep = -normal.dot(mean);
                     let sideways = (mean + normal * deep).length_squared();
                     // Points beside the mean are less deep under a curved surface than it.
                     let lift = ((bent - bends * sideways) / power).clamp(0.0, (0.5 * deep).max(0.0));
+                    // And so is the mean, but where it is tells that.
                     let depth = (deep - lift).max(0.0);
+                    let bent = (bends / power * sideways).clamp(0.0, depth);
                     let extinction = medium[k].extinction;
-                    let sheet = hopf_depth(depth * extinction) / extinction;
-                    source.place[stratum][k] += mean + normal * (lift + depth - sheet);
+                    let shift = (depth - bent) - hopf_depth((depth - bent) * extinction) / extinction;
+                    let sheet = depth - shift;
+                    source.scatters[stratum][k] += mean + normal * lift;
+                    source.place[stratum][k] += mean + normal * (lift + shift);
                     source.spread[k] -= power * (Depth::of(&medium[k], thickness).0 - sheet).abs();
                 }
             }
@@ -192,7 +206,7 @@ impl Beam {
     }
 }
 
-/// A ray that ends at an optical depth, in strata of equal power.
+/// A ray that ends at an optical depth, in strata.
 pub(super) struct Strata {
     /// Where they begin and end, and mean depths, in mean free paths.
     edges: [f64; COUNT + 1],
@@ -204,12 +218,12 @@ pub(super) struct Strata {
 impl Strata {
     pub fn new(end: f64) -> Self {
         let share = -(-end).exp_m1();
-        let count = COUNT as f64;
         let is_short = end < 1e-3;
+        let before = |k: usize| SHARES[..k].iter().sum::<f64>();
         let edge = |k: usize| match k {
-            _ if is_short => k as f64 / count * end,
             COUNT => end,
-            _ => -(-(k as f64) / count * share).ln_1p(),
+            _ if is_short => before(k) * end,
+            _ => -(-before(k) * share).ln_1p(),
         };
         let edges = std::array::from_fn(edge);
         // −∫ x e^−x.
@@ -218,10 +232,18 @@ impl Strata {
             if is_short {
                 0.5 * (edge(k) + edge(k + 1))
             } else {
-                (integral(edge(k)) - integral(edge(k + 1))) * count / share
+                (integral(edge(k)) - integral(edge(k + 1))) / (SHARES[k] * share)
             }
         });
         Self { edges, depths, share }
+    }
+
+    /// Rms distance of what scatters in a stratum from its mean, mean free paths.
+    pub fn deviation(&self, k: usize) -> f64 {
+        let x = (self.edges[k + 1] - self.edges[k]).min(700.0);
+        let used_up = -(-x).exp_m1();
+        let square = if x < 0.1 { x * x / 12.0 } else { 1.0 - x * x * (1.0 - used_up) / (used_up * used_up) };
+        square.sqrt()
     }
 
     /// How far a stratum is on the mean from a point at a depth `z`, E|z − z'|, whose sheet is at a depth below the same plane. `fold` is the depth over
@@ -265,7 +287,7 @@ mod tests {
     fn strata_keep_the_mean_depth() {
         for end in [1e-5, 1e-2, 0.5, 3.0, 50.0, 1e9] {
             let Strata { depths, share, .. } = Strata::new(end);
-            let mean = depths.iter().sum::<f64>() / COUNT as f64;
+            let mean = depths.iter().zip(SHARES).map(|(depth, share)| depth * share).sum::<f64>();
             // ∫ x e^−x over what is used up; a short ray's is its middle.
             let exact =
                 if end < 1e-2 { end * (0.5 - end / 12.0) } else { 1.0 - end / end.min(700.0).exp_m1() };

@@ -131,7 +131,13 @@ fn hard_media_stay_finite() {
             let solution = Solution::new(Body { shape: &BALL, volume, lights: &lights }, sites.clone(), 4);
             let layers = solution.layers();
             for site in 0..sites.len() {
-                let seen = Seen { sites: vec![(site, 1.0)], cosine: 0.5, chord: 10.0, far: Some((0, 0.5)) };
+                let seen = Seen {
+                    sites: vec![(site, 1.0)],
+                    cosine: 0.5,
+                    chord: 10.0,
+                    along: [(1.0, None), (2.0, Some(0))],
+                    far: Some((0, 0.5)),
+                };
                 let radiance = layers.radiance(&seen);
                 let exitance = solution.exitance(site);
                 // As much leaves as enters, π of either light, and a part of it for a site so coarse.

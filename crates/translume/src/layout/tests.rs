@@ -192,7 +192,7 @@ fn rust_and_wgsl_agree() {
     check!(GROUP, "SiteLight", SiteLightLayout, [irradiance, tint]);
     check!(POTENTIAL, "Shape", ShapeLayout, [normal, spread, moments, area, turns]);
     check!(POTENTIAL, "Charge", ChargeLayout, [power, x, y, z]);
-    check!(POTENTIAL, "Strata", StrataLayout, [direction, cosine, ways]);
+    check!(POTENTIAL, "Strata", StrataLayout, [direction, cosine, ways, rises]);
     let (_, expansion) = naga_layout(translume_shaders::POTENTIAL.source, "Expansion");
     assert_eq!(u64::from(expansion), crate::stages::scatter::dual::EXPANSION);
     check!(SITES, "Node", NodeLayout, [centre, radius, axis, thickness, middle, reach, scatter, sites]);

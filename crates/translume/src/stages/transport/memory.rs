@@ -239,6 +239,9 @@ impl TransportMemory {
                     all(&site_normals),
                     all(&parabolas),
                     all(&site_exitance),
+                    all(&charges),
+                    all(&strata),
+                    all(&shapes),
                 ],
             ),
             near: bind(

@@ -123,7 +123,7 @@ impl TransportStage {
             ),
             krylov: layout("krylov", &[UNIFORM, READ, READ, READ, WRITE, WRITE, WRITE, WRITE, READ]),
             layer: layout("layer", &[UNIFORM, READ, READ, READ, READ, READ, WRITE, WRITE]),
-            picture: layout("picture", &[UNIFORM, UNIFORM, READ, READ, READ, READ, WRITE]),
+            picture: layout("picture", &[UNIFORM, UNIFORM, READ, READ, READ, READ, WRITE, READ, READ, READ]),
             near: layout("near", &[UNIFORM, READ, READ, READ, WRITE]),
             smooth: layout("smooth", &[UNIFORM, READ, READ, READ, READ, READ, READ, READ, WRITE]),
         };
