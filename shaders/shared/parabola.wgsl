@@ -21,18 +21,32 @@ struct Parabola {
 // Optical depth that Hopf's function makes the surface of.
 const SURFACE: f32 = 0.096;
 
-// Minus the particular solution of light that enters at a place, αE/D times the mean way from an optical depth to what scatters deeper, with depths as
-// Hopf's function makes them: of a beam e^−kx, and of an even sky, 2 E₂(x), by two exponentials.
-fn beam_at(p: Parabola, depth: vec3f) -> vec3f {
-    let optical = transport.extinction.rgb * depth;
-    let x = max(optical, vec3f(SURFACE));
-    let shift = hopf_shift(x);
-    let beam = beyond_depth(x, shift, 1.0 / max(p.cosine, 0.05));
-    let sky = 0.3 * beyond_depth(x, shift, 0.9) + 0.7 * beyond_depth(x, shift, 2.1);
-    let above = max(hopf_shift(optical) - optical, vec3f(0.0));
-    return transport.albedo.rgb * p.light / (transport.diffusion.rgb * transport.extinction.rgb) * (mix(beam, sky, p.around) + above);
+// A depth, for all sites whose light gets there.
+struct Deep {
+    // Mean free paths, and by how many that is shallower with Hopf's function.
+    optical: vec3f,
+    shift: vec3f,
+    // Mean way from there to what an even sky's light scatters deeper.
+    sky: vec3f,
 }
 
-fn beyond_depth(x: vec3f, shift: vec3f, k: f32) -> vec3f {
+fn deep_at(depth: vec3f) -> Deep {
+    let optical = transport.extinction.rgb * depth;
+    let x = max(optical, vec3f(SURFACE));
+    let shift = hopf_shift(optical);
+    // 2 E₂(x) by two exponentials.
+    let sky = 0.3 * mean_way(x, min(shift, vec3f(SURFACE)), 0.9) + 0.7 * mean_way(x, min(shift, vec3f(SURFACE)), 2.1);
+    return Deep(optical, shift, sky);
+}
+
+// Minus the particular solution of light that enters at a place, αE/D times the mean way from a depth to what scatters deeper, with depths as Hopf's function
+// makes them: of a beam e^−kx, and of an even sky.
+fn beam_at(p: Parabola, at: Deep) -> vec3f {
+    let beam = mean_way(max(at.optical, vec3f(SURFACE)), min(at.shift, vec3f(SURFACE)), 1.0 / max(p.cosine, 0.05));
+    let above = max(at.shift - at.optical, vec3f(0.0));
+    return transport.albedo.rgb * p.light / (transport.diffusion.rgb * transport.extinction.rgb) * (mix(beam, at.sky, p.around) + above);
+}
+
+fn mean_way(x: vec3f, shift: vec3f, k: f32) -> vec3f {
     return exp(-k * x) * (1.0 / k + shift * (3.4 / (k + 3.4)));
 }

@@ -44,13 +44,13 @@ fn parabola(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups
     own.light = light;
     own.open = entered[transport.site_count + index].rgb;
     own.bulge = entered[transport.site_count + index].w;
-    own.surface = fluence[transport.site_count + index].rgb + beam_at(own, SURFACE / transport.extinction.rgb);
+    own.surface = fluence[transport.site_count + index].rgb + beam_at(own, deep_at(SURFACE / transport.extinction.rgb));
     let comes_in = fluence[2u * transport.site_count + index].rgb;
     let flux = robin_of(index) * (fluence[transport.site_count + index].rgb - 4.0 * comes_in);
     var under = (lit_below[index].rgb - sent_below[index].rgb) / clamp(sent_below[index].w, 0.2, 1.2);
     let slope = (flux - transport.albedo.rgb * light) / transport.diffusion.rgb;
     under -= spread_out(source, light, thickness, depth);
-    let rise = under + beam_at(own, depth + hopf_shift(depth * transport.extinction.rgb) / transport.extinction.rgb) - own.surface;
+    let rise = under + beam_at(own, deep_at(depth + hopf_shift(depth * transport.extinction.rgb) / transport.extinction.rgb)) - own.surface;
     let thin = depth * transport.extinction.rgb <= vec3f(1e-3);
     own.slope = select(slope, vec3f(0.0), thin);
     own.curve = select((rise / max(depth, vec3f(1e-20)) - slope) / max(depth, vec3f(1e-20)), vec3f(0.0), thin);

@@ -28,9 +28,9 @@ fn depth_along(thickness: f32, cosine: f32, s: vec3f, chord: f32) -> vec3f {
     return cosine * s * (1.0 - short * s / chord);
 }
 
-// φ at a depth, less the particular solution of light that enters there, and that.
-fn fluence_at(p: Parabola, depth: vec3f) -> vec3f {
-    let shifted = depth - hopf_shift(depth * transport.extinction.rgb) / transport.extinction.rgb;
+// φ at a depth, less the particular solution of light that enters there.
+fn fluence_at(p: Parabola, at: Deep) -> vec3f {
+    let shifted = (at.optical - at.shift) / transport.extinction.rgb;
     return p.surface + shifted * (p.slope + shifted * p.curve);
 }
 
@@ -115,13 +115,17 @@ fn many(sight: Sight) -> vec3f {
     let far_end = depth_along(other.thickness, sight.there, chord - end, chord);
     let first = parabolas[sight.first];
     let second = parabolas[sight.second];
-    let at_begin = weights(sight, begin);
-    let at_end = weights(sight, end);
-    var before = max(at_begin.own * fluence_at(own, near_begin) + at_begin.first * fluence_at(first, near_begin) + at_begin.second * fluence_at(second, near_begin), vec3f(0.0));
-    var behind = max(fluence_at(other, far_end), vec3f(0.0)) + at_end.own * beam_at(own, near_end) + at_end.first * beam_at(first, near_end) + at_end.second * beam_at(second, near_end);
+    let begins = deep_at(near_begin);
+    let ends = deep_at(far_end);
+    var row: Row;
+    row.own = own;
+    row.first = parabolas[sight.first];
+    row.second = parabolas[sight.second];
+    var before = max(fluence_along(row, weights(sight, begin), begins), vec3f(0.0));
+    let behind = max(fluence_at(other, ends), vec3f(0.0)) + beam_along(row, weights(sight, end), deep_at(near_end));
     var decay = transport.decay.rgb * sight.cosine;
     if sight.ends {
-        before += beam_at(other, far_begin);
+        before += beam_at(other, deep_at(far_begin));
         decay = 0.5 * transport.decay.rgb * (sight.cosine + sight.there);
     }
     let length = decay * (end - begin);
@@ -129,19 +133,20 @@ fn many(sight: Sight) -> vec3f {
     for (var k = 0u; k < STEPS; k++) {
         let part = (f32(k) + 0.5) / f32(STEPS);
         let s = min(-log(1.0 - part * share) / extinction, vec3f(chord));
-        let near = depth_along(own.thickness, sight.cosine, s, chord);
-        let shallow = min(near, near_begin);
+        let near = deep_at(depth_along(own.thickness, sight.cosine, s, chord));
         let w = weights(sight, s);
-        let whole = w.own * fluence_at(own, shallow) + w.first * fluence_at(first, shallow) + w.second * fluence_at(second, shallow);
-        let from_own = w.own * beam_at(own, near) + w.first * beam_at(first, near) + w.second * beam_at(second, near);
-        var value = whole * exp(-decay * max(s - begin, vec3f(0.0))) - from_own;
+        let from_own = beam_along(row, w, near);
+        let whole = fluence_along(row, w, near);
+        var value = whole - from_own;
         if sight.ends {
-            let far = depth_along(other.thickness, sight.there, chord - s, chord);
+            let far = deep_at(depth_along(other.thickness, sight.there, chord - s, chord));
             let from_other = beam_at(other, far);
             let way = (s - begin) / (end - begin);
             let between = before * rising(1.0 - way, length) + behind * rising(way, length) - from_own - from_other;
             let back = fluence_at(other, far) - from_other;
-            value = select(select(between, back, s >= end), whole - from_own, s <= begin);
+            value = select(select(between, back, s >= end), value, s <= begin);
+        } else {
+            value = select(before * exp(-decay * (s - begin)) - from_own, value, s <= begin);
         }
         sum += max(value, vec3f(0.0));
     }
@@ -159,6 +164,21 @@ fn weights(sight: Sight, s: vec3f) -> Weights {
     let a = clamp(s / sight.places.x, vec3f(0.0), vec3f(1.0));
     let b = clamp((s - sight.places.x) / (sight.places.y - sight.places.x), vec3f(0.0), vec3f(1.0));
     return Weights(1.0 - a, a - b, b);
+}
+
+// The sites that a ray of view passes under.
+struct Row {
+    own: Parabola,
+    first: Parabola,
+    second: Parabola,
+}
+
+fn fluence_along(row: Row, w: Weights, at: Deep) -> vec3f {
+    return w.own * fluence_at(row.own, at) + w.first * fluence_at(row.first, at) + w.second * fluence_at(row.second, at);
+}
+
+fn beam_along(row: Row, w: Weights, at: Deep) -> vec3f {
+    return w.own * beam_at(row.own, at) + w.first * beam_at(row.first, at) + w.second * beam_at(row.second, at);
 }
 
 // sinh(y·length) / sinh(length): where there are no sources φ between two places is that of the way from either.

@@ -5,6 +5,21 @@ const FURTHEST: f32 = 5.0;
 // Opening angle, squared, of groups of sites.
 const TWICE_THETA_SQUARED: f32 = 0.25;
 
+// From so many mean free paths on the strata of a site are one.
+const ONE: f32 = 2.0;
+
+// A stratum of a site's light.
+struct Layer {
+    way: vec3f,
+    // Of its depth, mm².
+    variance: vec3f,
+    share: f32,
+}
+
+fn square_of(x: vec3f) -> vec3f {
+    return x * x;
+}
+
 // φ of light that scattered once, mean over a ray of view that ends at an optical depth.
 fn once_scattered(origin: vec3f, direction: vec3f, cosine: f32, chord: f32) -> vec3f {
     let extinction = transport.extinction.rgb;
@@ -20,7 +35,8 @@ fn once_scattered(origin: vec3f, direction: vec3f, cosine: f32, chord: f32) -> v
     }
     let last = ways[STRATA - 1u];
     let longest = max(last.x, max(last.y, last.z));
-    let furthest = FURTHEST / min(extinction.x, min(extinction.y, extinction.z));
+    let longest_free = 1.0 / min(extinction.x, min(extinction.y, extinction.z));
+    let furthest = FURTHEST * longest_free;
     var sum = vec3f(0.0);
     var level = transport.top_level;
     var node = 0u;
@@ -57,25 +73,39 @@ fn once_scattered(origin: vec3f, direction: vec3f, cosine: f32, chord: f32) -> v
             let start = origin - centre - moved;
             let normal = safe_normalize(shape.normal, vec3f(0.0));
             let a2 = 2.0 * shape.spread * shape.spread;
-            var of_source = vec3f(0.0);
+            // Far away all strata are one.
+            var mean = vec3f(0.0);
+            var mean_square = vec3f(0.0);
             var before = vec3f(0.0);
+            var sources: array<Layer, STRATA>;
             for (var k = 0u; k < STRATA; k++) {
                 let way = light.ways[k].rgb;
                 let width = light.cosine * stratum_deviation(k, (way - before) * extinction) / extinction;
                 before = way;
+                sources[k] = Layer(way, width * width, SHARES[k]);
+                mean += SHARES[k] * way;
+                mean_square += SHARES[k] * (light.cosine * light.cosine * way * way + width * width);
+            }
+            var count = STRATA;
+            if square > ONE * ONE * longest_free * longest_free {
+                count = 1u;
+                sources[0] = Layer(mean, mean_square - light.cosine * light.cosine * mean * mean, 1.0);
+            }
+            var of_source = vec3f(0.0);
+            for (var k = 0u; k < count; k++) {
+                let own = sources[k];
                 for (var m = 0u; m < STRATA; m++) {
                     let along = ways[m];
-                    let x = start.x + direction.x * along - u.x * way;
-                    let y = start.y + direction.y * along - u.y * way;
-                    let z = start.z + direction.z * along - u.z * way;
+                    let x = start.x + direction.x * along - u.x * own.way;
+                    let y = start.y + direction.y * along - u.y * own.way;
+                    let z = start.z + direction.z * along - u.z * own.way;
                     let height = normal.x * x + normal.y * y + normal.z * z;
                     let beside2 = max(x * x + y * y + z * z - height * height, vec3f(0.0));
-                    let h2 = extinction * extinction * height * height;
-                    let v = extinction * extinction * (width * width + widths[m]);
-                    of_source += SHARES[k] * SHARES[m] * disc(extinction * extinction * beside2, effective(h2, v), extinction * extinction * a2);
+                    let h2 = effective(square_of(extinction) * height * height, square_of(extinction) * (own.variance + widths[m]));
+                    of_source += own.share * SHARES[m] * disc(square_of(extinction) * beside2, h2, square_of(extinction) * a2);
                 }
             }
-            sum += charge.power.rgb * of_source * extinction * extinction;
+            sum += charge.power.rgb * of_source * square_of(extinction);
         }
         let next = passed(transport.site_count, transport.top_level, Step(level, node));
         level = next.level;
