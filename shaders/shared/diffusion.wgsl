@@ -11,7 +11,7 @@ struct Transport {
     decay: vec4f,
     // What leaves per fluence at the surface.
     robin: vec4f,
-    // What diffusion lacks of light that scatters again, over what scattered once deep inside.
+    // What diffusion lacks of light that scattered twice, over that.
     shortfall: vec4f,
     site_count: u32,
     top_level: u32,

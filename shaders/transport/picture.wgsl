@@ -1,4 +1,4 @@
-// Picture: φ under the surface → radiance towards the eye, at every site, and light that scattered once.
+// Picture: φ under the surface → radiance towards the eye, at every site, and light that scattered once or twice.
 
 @group(0) @binding(0) var<uniform> transport: Transport;
 @group(0) @binding(1) var<uniform> lighting: Gather;
@@ -17,6 +17,8 @@ const REACH: f32 = 1.6;
 const MOST_OF_RAY: f32 = 0.35;
 // Where along a ray of view other sites than the one that is seen tell how light is there, mean free paths.
 const ALONG: vec2f = vec2f(0.6, 1.6);
+// No further than this share of it.
+const MOST_ALONG: f32 = 0.5;
 // Steps along a ray of view.
 const STEPS: u32 = 12u;
 // A ray that grazes the surface by less runs along it.
@@ -53,8 +55,8 @@ fn gathered(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups
     sight.own = parabolas[index];
     sight.other = sight.own;
     sight.places = ALONG * 3.0 / (transport.extinction.x + transport.extinction.y + transport.extinction.z);
-    sight.first = site_above(index, place.xyz + direction * sight.places.x, normal, sight.places.x < 0.5 * chord);
-    sight.second = site_above(sight.first, place.xyz + direction * sight.places.y, normal, sight.places.y < 0.5 * chord);
+    sight.first = site_above(index, place.xyz + direction * sight.places.x, normal, sight.places.x < MOST_ALONG * chord);
+    sight.second = site_above(sight.first, place.xyz + direction * sight.places.y, normal, sight.places.y < MOST_ALONG * chord);
     sight.cosine = cosine;
     sight.there = cosine;
     sight.chord = chord;
@@ -63,9 +65,9 @@ fn gathered(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups
         sight.other = parabolas[far.site];
         sight.there = max(dot(normalize(site_normals[far.site].xyz), direction), GRAZING);
     }
-    let share = 1.0 - exp(-min(transport.extinction.rgb * chord, vec3f(80.0)));
-    let twice = transport.shortfall.rgb * transport.albedo.rgb / (4.0 * PI) * share * once_scattered(place.xyz, direction, cosine, chord);
-    let radiance = many(sight) + once(sight, place.xyz, direction, width) + twice;
+    // What scattered once, and what diffusion lacks of what scattered again.
+    let few = once(sight, place.xyz, direction, width) + transport.shortfall.rgb * twice(place.xyz, direction, cosine, chord);
+    let radiance = many(sight) + few;
     site_exitance[index] = vec4f(max(PI * radiance, vec3f(0.0)), 0.0);
 }
 
@@ -90,13 +92,6 @@ fn site_above(last: u32, place: vec3f, normal: vec3f, is_asked: bool) -> u32 {
     if !is_asked { return last; }
     let above = first_crossing(place, normal, 0.0, 1.0).site;
     return select(above, last, above == NO_SITE);
-}
-
-// How far the surface is from a place along a ray of view, mm.
-fn depth_at(sight: Sight, s: f32) -> f32 {
-    let near = depth_along(sight.own.thickness, sight.cosine, vec3f(s), sight.chord).x;
-    let far = depth_along(sight.other.thickness, sight.there, vec3f(sight.chord - s), sight.chord).x;
-    return select(near, min(near, far), sight.ends);
 }
 
 // Scattered more than once, as diffusion has it.
@@ -191,7 +186,7 @@ fn rising(y: vec3f, length: vec3f) -> vec3f {
 const PLACES: u32 = 7u;
 const SPACING: array<f32, PLACES> = array<f32, PLACES>(0.0, 0.02, 0.08, 0.25, 0.8, 2.0, 5.0);
 
-// Scattered once, and what diffusion lacks of light that scatters again: none where the first place is at the surface, as in `shortfall.rs`.
+// Scattered once.
 fn once(sight: Sight, position: vec3f, direction: vec3f, width: f32) -> vec3f {
     let extinction = transport.extinction.rgb;
     let chord = sight.chord;
@@ -202,13 +197,11 @@ fn once(sight: Sight, position: vec3f, direction: vec3f, width: f32) -> vec3f {
         var before = vec3f(0.0);
         var way = 0.0;
         var optical = 0.0;
-        var depth = 0.0;
         for (var place = 0u; place < PLACES; place++) {
             let s = min(SPACING[place] * longest, chord);
             let at = min(max(s, 0.05 * width), 0.5 * (s + chord));
             var found = arriving_at(k, position + direction * at, width);
             if place == 0u && found.is_here { found.way = 0.0; }
-            let deep = depth_at(sight, s);
             if place > 0u {
                 let begins = extinction * optical;
                 let passes = extinction * (s + found.way - optical);
@@ -217,7 +210,6 @@ fn once(sight: Sight, position: vec3f, direction: vec3f, width: f32) -> vec3f {
             before = found.light;
             way = s;
             optical = s + found.way;
-            depth = deep;
         }
         // What is left goes on as it was.
         if way < chord { sum += 0.5 * before * exp(-min(extinction * optical, vec3f(80.0))); }

@@ -1,111 +1,93 @@
-// Twice: light that scattered once, straight to where a ray of view passes. A ray is three strata, and so is the light of each site: discs of its area.
+// Twice: light that scattered once, straight to where a ray of view passes and scatters it again. The ray is strata, and so is the light of each site: discs
+// of its area.
 
-// Nothing comes from further, mean free paths.
+// Nothing comes from further, mean free paths of the channel that sees furthest.
 const FURTHEST: f32 = 5.0;
-// Opening angle, squared, of groups of sites.
-const TWICE_THETA_SQUARED: f32 = 0.25;
-
-// From so many mean free paths on the strata of a site are one.
+// From so many on the strata of a site are one.
 const ONE: f32 = 2.0;
+// Opening angle, squared, of groups of sites.
+const OPENING_SQUARED: f32 = 0.25;
 
 // A stratum of a site's light.
-struct Layer {
+struct Sheet {
+    // Along its direction, mm.
     way: vec3f,
     // Of its depth, mm².
     variance: vec3f,
+    // Of the power.
     share: f32,
 }
 
-fn square_of(x: vec3f) -> vec3f {
-    return x * x;
+struct Sheets {
+    sheets: array<Sheet, STRATA>,
+    count: u32,
 }
 
-// φ of light that scattered once, mean over a ray of view that ends at an optical depth.
+// φ of light that scattered once, mean over where a ray of view scatters light.
 fn once_scattered(origin: vec3f, direction: vec3f, cosine: f32, chord: f32) -> vec3f {
     let extinction = transport.extinction.rgb;
     let end = extinction * chord;
     let share = 1.0 - exp(-min(end, vec3f(80.0)));
     var ways: array<vec3f, STRATA>;
-    var widths: array<vec3f, STRATA>;
+    var variances: array<vec3f, STRATA>;
     for (var k = 0u; k < STRATA; k++) {
         let part = stratum(end, share, k);
         ways[k] = part.mean / extinction;
         let width = cosine * deviation(part.to - part.begin) / extinction;
-        widths[k] = width * width;
+        variances[k] = width * width;
     }
     let last = ways[STRATA - 1u];
     let longest = max(last.x, max(last.y, last.z));
-    let longest_free = 1.0 / min(extinction.x, min(extinction.y, extinction.z));
-    let furthest = FURTHEST * longest_free;
+    let free_path = 1.0 / min(extinction.x, min(extinction.y, extinction.z));
+    let square_of_extinction = extinction * extinction;
     var sum = vec3f(0.0);
     var level = transport.top_level;
     var node = 0u;
     loop {
         let source = transport.sources[level / 4u][level % 4u] + node;
-        var centre: vec3f;
+        var centre = site_positions[select(node, 0u, level > 0u)].xyz;
         var reach = 0.0;
         if level > 0u {
-            let own = nodes[node_index(level, node)];
-            centre = own.centre;
-            reach = own.radius;
-        } else {
-            centre = site_positions[node].xyz;
+            centre = nodes[node_index(level, node)].centre;
+            reach = nodes[node_index(level, node)].radius;
         }
         let light = strata[source];
         let charge = charges[source];
-        let whole = luminance(charge.power.rgb);
+        let power = luminance(charge.power.rgb);
+        // From the nearest place of the ray to the nearest of where light scatters.
         let offset = centre - origin;
-        let nearest = offset - direction * clamp(dot(offset, direction), 0.0, longest);
+        let beside = offset - direction * clamp(dot(offset, direction), 0.0, longest);
         let u = light.direction;
-        let deep = light.ways[STRATA - 1u];
-        let deepest = max(deep.x, max(deep.y, deep.z));
-        let apart = nearest + u * clamp(-dot(nearest, u) / max(dot(u, u), 1e-12), 0.0, deepest);
+        let deepest = max(light.ways[STRATA - 1u].x, max(light.ways[STRATA - 1u].y, light.ways[STRATA - 1u].z));
+        let apart = beside + u * clamp(-dot(beside, u) / max(dot(u, u), 1e-12), 0.0, deepest);
         let square = dot(apart, apart);
-        let shape = shapes[source];
-        let is_far = max(sqrt(square) - reach, 0.0) > furthest || whole <= 0.0;
-        if level > 0u && !is_far && reach * reach > TWICE_THETA_SQUARED * square {
+        let is_out_of_sight = sqrt(square) - reach > FURTHEST * free_path || power <= 0.0;
+        if level > 0u && !is_out_of_sight && reach * reach > OPENING_SQUARED * square {
             level -= 1u;
             node *= 4u;
             continue;
         }
-        if !is_far {
-            let moved = vec3f(luminance(charge.x.rgb), luminance(charge.y.rgb), luminance(charge.z.rgb)) / whole;
-            let start = origin - centre - moved;
+        if !is_out_of_sight {
+            let shape = shapes[source];
+            let middle = vec3f(luminance(charge.x.rgb), luminance(charge.y.rgb), luminance(charge.z.rgb)) / power;
+            let start = origin - centre - middle;
             let normal = safe_normalize(shape.normal, vec3f(0.0));
-            let a2 = 2.0 * shape.spread * shape.spread;
-            // Far away all strata are one.
-            var mean = vec3f(0.0);
-            var mean_square = vec3f(0.0);
-            var before = vec3f(0.0);
-            var sources: array<Layer, STRATA>;
-            for (var k = 0u; k < STRATA; k++) {
-                let way = light.ways[k].rgb;
-                let width = light.cosine * stratum_deviation(k, (way - before) * extinction) / extinction;
-                before = way;
-                sources[k] = Layer(way, width * width, SHARES[k]);
-                mean += SHARES[k] * way;
-                mean_square += SHARES[k] * (light.cosine * light.cosine * way * way + width * width);
-            }
-            var count = STRATA;
-            if square > ONE * ONE * longest_free * longest_free {
-                count = 1u;
-                sources[0] = Layer(mean, mean_square - light.cosine * light.cosine * mean * mean, 1.0);
-            }
-            var of_source = vec3f(0.0);
-            for (var k = 0u; k < count; k++) {
-                let own = sources[k];
+            let radius2 = square_of_extinction * 2.0 * shape.spread * shape.spread;
+            let lit = sheets(light, square > ONE * ONE * free_path * free_path);
+            var received = vec3f(0.0);
+            for (var k = 0u; k < lit.count; k++) {
+                let own = lit.sheets[k];
                 for (var m = 0u; m < STRATA; m++) {
-                    let along = ways[m];
-                    let x = start.x + direction.x * along - u.x * own.way;
-                    let y = start.y + direction.y * along - u.y * own.way;
-                    let z = start.z + direction.z * along - u.z * own.way;
+                    let x = start.x + direction.x * ways[m] - u.x * own.way;
+                    let y = start.y + direction.y * ways[m] - u.y * own.way;
+                    let z = start.z + direction.z * ways[m] - u.z * own.way;
                     let height = normal.x * x + normal.y * y + normal.z * z;
-                    let beside2 = max(x * x + y * y + z * z - height * height, vec3f(0.0));
-                    let h2 = effective(square_of(extinction) * height * height, square_of(extinction) * (own.variance + widths[m]));
-                    of_source += own.share * SHARES[m] * disc(square_of(extinction) * beside2, h2, square_of(extinction) * a2);
+                    let beside2 = square_of_extinction * max(x * x + y * y + z * z - height * height, vec3f(0.0));
+                    let height2 = across(square_of_extinction * height * height, square_of_extinction * (own.variance + variances[m]));
+                    received += own.share * SHARES[m] * from_disc(beside2, height2, radius2);
                 }
             }
-            sum += charge.power.rgb * of_source * square_of(extinction);
+            sum += charge.power.rgb * received * square_of_extinction;
         }
         let next = passed(transport.site_count, transport.top_level, Step(level, node));
         level = next.level;
@@ -115,32 +97,63 @@ fn once_scattered(origin: vec3f, direction: vec3f, cosine: f32, chord: f32) -> v
     return sum;
 }
 
-fn effective(h2: vec3f, v: vec3f) -> vec3f {
-    return h2 * h2 / (h2 + 4.38 * v + 1e-12) + 0.265 * v + 1e-6;
+// Radiance of light that scattered twice.
+fn twice(origin: vec3f, direction: vec3f, cosine: f32, chord: f32) -> vec3f {
+    let share = 1.0 - exp(-min(transport.extinction.rgb * chord, vec3f(80.0)));
+    return transport.albedo.rgb / (4.0 * PI) * share * once_scattered(origin, direction, cosine, chord);
 }
 
-fn disc(beside2: vec3f, h2: vec3f, a2: vec3f) -> vec3f {
-    let x = a2 + h2 - beside2;
-    let root = sqrt(x * x + 4.0 * h2 * beside2);
-    let ratio = select(2.0 * beside2 / max(root - x, vec3f(1e-20)), (x + root) / (2.0 * h2), x > vec3f(0.0));
+// A site's light, as one sheet or as all of its strata.
+fn sheets(light: Strata, is_one: bool) -> Sheets {
+    var all: Sheets;
+    var mean = vec3f(0.0);
+    var square = vec3f(0.0);
+    var before = vec3f(0.0);
+    for (var k = 0u; k < STRATA; k++) {
+        let way = light.ways[k].rgb;
+        // From how far apart the strata are.
+        let x = transport.extinction.rgb * (way - before);
+        let width = light.cosine * (way - before) * (SHORT[k] + LONG[k] * x);
+        before = way;
+        all.sheets[k] = Sheet(way, width * width, SHARES[k]);
+        mean += SHARES[k] * way;
+        square += SHARES[k] * (light.cosine * light.cosine * way * way + width * width);
+    }
+    all.count = STRATA;
+    if is_one {
+        all.count = 1u;
+        all.sheets[0] = Sheet(mean, max(square - light.cosine * light.cosine * mean * mean, vec3f(0.0)), 1.0);
+    }
+    return all;
+}
+
+// Rms distance within a stratum from its mean, over how far that is from the last one's: of a short way, of which strata are even, and how that grows to where
+// the way does not end.
+const SHORT: array<f32, STRATA> = array<f32, STRATA>(0.577, 0.247, 0.231, 0.19);
+const LONG: array<f32, STRATA> = array<f32, STRATA>(0.214, 0.157, 0.164, 0.253);
+
+// Rms distance of what scatters over an optical depth from its mean, mean free paths.
+fn deviation(depth: vec3f) -> vec3f {
+    let x = min(depth, vec3f(60.0));
+    let used_up = 1.0 - exp(-x);
+    return sqrt(select(1.0 - x * x * (1.0 - used_up) / max(used_up * used_up, vec3f(1e-12)), x * x / 12.0, x < vec3f(0.3)));
+}
+
+// Square of the distance of two sheets at which e^−r / 4πr² is its mean over two strata whose middles are so far apart, with this variance of both depths
+// together; mean free paths. The two constants make light that a half-space scatters twice right within 3 % in all directions.
+fn across(height2: vec3f, variance: vec3f) -> vec3f {
+    return height2 * height2 / (height2 + 4.38 * variance + 1e-12) + 0.265 * variance + 1e-6;
+}
+
+// Mean of e^−r / 4πr² over a disc of this radius², beside its axis and above it by these squares: that of 1/r² in closed form, and e^−r from the nearest
+// distance on evenly in ln r, by Simpson's rule; mean free paths.
+fn from_disc(beside2: vec3f, height2: vec3f, radius2: vec3f) -> vec3f {
+    let x = radius2 + height2 - beside2;
+    let root = sqrt(x * x + 4.0 * height2 * beside2);
+    let ratio = select(2.0 * beside2 / max(root - x, vec3f(1e-20)), (x + root) / (2.0 * height2), x > vec3f(0.0));
     let logarithm = log(max(ratio, vec3f(1.0)));
-    let nearest = sqrt(h2 + max(beside2 - a2, vec3f(0.0)));
+    let nearest = sqrt(height2 + max(beside2 - radius2, vec3f(0.0)));
     let step = exp(0.25 * logarithm);
     let decayed = (exp(-nearest) + 4.0 * exp(-nearest * step) + exp(-nearest * step * step)) / 6.0;
-    return 0.07957747 * logarithm / a2 * decayed;
-}
-
-// rms distance from the mean of what is used up exponentially over an optical depth.
-fn deviation(t: vec3f) -> vec3f {
-    let x = min(t, vec3f(60.0));
-    let e = 1.0 - exp(-x);
-    return sqrt(select(1.0 - x * x * (1.0 - e) / max(e * e, vec3f(1e-12)), x * x / 12.0, x < vec3f(0.3)));
-}
-
-const OF_SHORT: array<f32, STRATA> = array<f32, STRATA>(0.577, 0.247, 0.231, 0.19);
-const OF_LONG: array<f32, STRATA> = array<f32, STRATA>(0.214, 0.157, 0.164, 0.253);
-
-// The same of a stratum of which the way from the last one is known.
-fn stratum_deviation(k: u32, x: vec3f) -> vec3f {
-    return x * (OF_SHORT[k] + OF_LONG[k] * x);
+    return logarithm / (4.0 * PI * max(radius2, vec3f(1e-12))) * decayed;
 }

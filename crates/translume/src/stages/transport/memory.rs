@@ -388,8 +388,8 @@ pub(crate) fn bytes(sites: &Sites) -> u64 {
 
 /// Whether a binding holds the largest of it.
 pub(crate) fn check(sites: &Sites, limits: &wgpu::Limits) -> Result<(), Error> {
-    let Sizes { charges, directions, .. } = Sizes::new(sites);
-    let (required, actual) = (charges.max(directions), gpu::binding_limit(limits));
+    let Sizes { charges, directions, strata, .. } = Sizes::new(sites);
+    let (required, actual) = (charges.max(directions).max(strata), gpu::binding_limit(limits));
     if required <= actual {
         return Ok(());
     }

@@ -14,6 +14,7 @@
 //! | `transport/krylov.wgsl` | the next try | `krylov` |
 //! | `transport/layer.wgsl` | exitance by the diffuse law, φ under the surface | `layer` |
 //! | `transport/picture.wgsl` | radiance towards the eye, once scattered light | `picture`, `single` |
+//! | `transport/twice.wgsl` | twice scattered light | `twice` |
 //! | `transport/near.wgsl` | the sites around each | |
 //! | `transport/smooth.wgsl`, `transport/strangers.wgsl` | exitance of texels from that of the sites around | |
 
