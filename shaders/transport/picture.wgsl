@@ -65,9 +65,9 @@ fn gathered(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups
         sight.other = parabolas[far.site];
         sight.there = max(dot(normalize(site_normals[far.site].xyz), direction), GRAZING);
     }
-    // What scattered once, and what diffusion lacks of what scattered again.
-    let few = once(sight, place.xyz, direction, width) + transport.shortfall.rgb * twice(place.xyz, direction, cosine, chord);
-    let radiance = many(sight) + few;
+    // What diffusion lacks of light that scattered again comes last.
+    let most = many(sight) + once(sight, place.xyz, direction, width);
+    let radiance = most + transport.shortfall.rgb * twice(place.xyz, direction, cosine, chord);
     site_exitance[index] = vec4f(max(PI * radiance, vec3f(0.0)), 0.0);
 }
 
@@ -137,9 +137,9 @@ fn many(sight: Sight) -> vec3f {
             let far = deep_at(depth_along(other.thickness, sight.there, chord - s, chord));
             let from_other = beam_at(other, far);
             let way = (s - begin) / (end - begin);
-            let between = before * rising(1.0 - way, length) + behind * rising(way, length) - from_own - from_other;
+            let inside = before * rising(1.0 - way, length) + behind * rising(way, length) - from_own - from_other;
             let back = fluence_at(other, far) - from_other;
-            value = select(select(between, back, s >= end), value, s <= begin);
+            value = select(select(inside, back, s >= end), value, s <= begin);
         } else {
             value = select(before * exp(-decay * (s - begin)) - from_own, value, s <= begin);
         }

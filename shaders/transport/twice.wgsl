@@ -5,8 +5,10 @@
 const FURTHEST: f32 = 5.0;
 // From so many on the strata of a site are one.
 const ONE: f32 = 2.0;
-// Opening angle, squared, of groups of sites.
+// Opening angle, squared, of groups of sites, and how much further away they may be taken to be, mean free paths of the channel where they are shortest:
+// strata are that wide.
 const OPENING_SQUARED: f32 = 0.25;
+const WIDE: f32 = 0.5;
 
 // A stratum of a site's light.
 struct Sheet {
@@ -39,6 +41,7 @@ fn once_scattered(origin: vec3f, direction: vec3f, cosine: f32, chord: f32) -> v
     let last = ways[STRATA - 1u];
     let longest = max(last.x, max(last.y, last.z));
     let free_path = 1.0 / min(extinction.x, min(extinction.y, extinction.z));
+    let wide = WIDE / max(extinction.x, max(extinction.y, extinction.z));
     let square_of_extinction = extinction * extinction;
     var sum = vec3f(0.0);
     var level = transport.top_level;
@@ -62,7 +65,7 @@ fn once_scattered(origin: vec3f, direction: vec3f, cosine: f32, chord: f32) -> v
         let apart = beside + u * clamp(-dot(beside, u) / max(dot(u, u), 1e-12), 0.0, deepest);
         let square = dot(apart, apart);
         let is_out_of_sight = sqrt(square) - reach > FURTHEST * free_path || power <= 0.0;
-        if level > 0u && !is_out_of_sight && reach * reach > OPENING_SQUARED * square {
+        if level > 0u && !is_out_of_sight && reach * reach > OPENING_SQUARED * (square + wide * wide) {
             level -= 1u;
             node *= 4u;
             continue;
@@ -77,15 +80,12 @@ fn once_scattered(origin: vec3f, direction: vec3f, cosine: f32, chord: f32) -> v
             var received = vec3f(0.0);
             for (var k = 0u; k < lit.count; k++) {
                 let own = lit.sheets[k];
-                for (var m = 0u; m < STRATA; m++) {
-                    let x = start.x + direction.x * ways[m] - u.x * own.way;
-                    let y = start.y + direction.y * ways[m] - u.y * own.way;
-                    let z = start.z + direction.z * ways[m] - u.z * own.way;
-                    let height = normal.x * x + normal.y * y + normal.z * z;
-                    let beside2 = square_of_extinction * max(x * x + y * y + z * z - height * height, vec3f(0.0));
-                    let height2 = across(square_of_extinction * height * height, square_of_extinction * (own.variance + variances[m]));
-                    received += own.share * SHARES[m] * from_disc(beside2, height2, radius2);
-                }
+                // Not a loop: software adapters end all of a shader's at 65,535 turns together.
+                var pair = SHARES[0] * between(start, direction, ways[0], variances[0], u, own, normal, radius2);
+                pair += SHARES[1] * between(start, direction, ways[1], variances[1], u, own, normal, radius2);
+                pair += SHARES[2] * between(start, direction, ways[2], variances[2], u, own, normal, radius2);
+                pair += SHARES[3] * between(start, direction, ways[3], variances[3], u, own, normal, radius2);
+                received += own.share * pair;
             }
             sum += charge.power.rgb * received * square_of_extinction;
         }
@@ -95,6 +95,17 @@ fn once_scattered(origin: vec3f, direction: vec3f, cosine: f32, chord: f32) -> v
         if level == transport.top_level { break; }
     }
     return sum;
+}
+
+// Mean of e^−r / 4πr² between a stratum of the ray and one of a site's light, mean free paths.
+fn between(start: vec3f, direction: vec3f, way: vec3f, variance: vec3f, u: vec3f, own: Sheet, normal: vec3f, radius2: vec3f) -> vec3f {
+    let square = transport.extinction.rgb * transport.extinction.rgb;
+    let x = start.x + direction.x * way - u.x * own.way;
+    let y = start.y + direction.y * way - u.y * own.way;
+    let z = start.z + direction.z * way - u.z * own.way;
+    let height = normal.x * x + normal.y * y + normal.z * z;
+    let beside2 = square * max(x * x + y * y + z * z - height * height, vec3f(0.0));
+    return from_disc(beside2, across(square * height * height, square * (own.variance + variance)), radius2);
 }
 
 // Radiance of light that scattered twice.
