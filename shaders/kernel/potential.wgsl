@@ -16,7 +16,7 @@ const QUARTER_PI_INVERSE: f32 = 0.07957747;
 // The least square of a distance, mm².
 const LEAST_R2: f32 = 1e-12;
 // Where light scatters first no more than this share of the distance away, it is one source and how far that is spread out.
-const SHALLOW: f32 = 0.5;
+const SHALLOW: f32 = 0.8;
 // A source's second moments change what it sends by no more than this share of it.
 const MOST_CORRECTION: f32 = 1.0;
 
@@ -190,7 +190,7 @@ fn distance_square(source: u32, seen: vec4f, place: Place) -> f32 {
     if LIGHT && seen.w > 0.0 {
         let u = strata[source].direction;
         let along = (o.x * u.x + o.y * u.y + o.z * u.z) / max(dot(u, u), 1e-12);
-        r2 = square(beyond(o, -u, clamp(along, vec4f(0.0), ways(strata[source], STRATA - 1u))));
+        r2 = square(beyond(o, -u, clamp(along, vec4f(0.0), ways(strata[source], STRATA - 2u))));
     }
     return min(r2.x, min(r2.y, r2.z));
 }

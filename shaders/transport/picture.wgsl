@@ -20,7 +20,7 @@ const ALONG: vec2f = vec2f(0.6, 1.6);
 // No further than this share of it.
 const MOST_ALONG: f32 = 0.5;
 // Steps along a ray of view.
-const STEPS: u32 = 12u;
+const STEPS: u32 = 10u;
 // A ray that grazes the surface by less runs along it.
 const GRAZING: f32 = 0.02;
 

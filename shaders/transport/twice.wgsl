@@ -2,12 +2,12 @@
 // of its area.
 
 // Nothing comes from further, mean free paths of the channel that sees furthest.
-const FURTHEST: f32 = 5.0;
+const FURTHEST: f32 = 4.0;
 // From so many on the strata of a site are one.
-const ONE: f32 = 2.0;
+const ONE: f32 = 1.5;
 // Opening angle, squared, of groups of sites, and how much further away they may be taken to be, mean free paths of the channel where they are shortest:
 // strata are that wide.
-const OPENING_SQUARED: f32 = 0.25;
+const OPENING_SQUARED: f32 = 0.36;
 const WIDE: f32 = 0.5;
 
 // A stratum of a site's light.

@@ -29,8 +29,8 @@ pub enum Transport {
     /// each from where the last frame stopped. Light that scattered first is put where it did, crosses thin parts that are in their own shadow,
     /// and leaves a concave body to enter it again. What leaves is as bright in all directions. The profile is not used.
     Boundary,
-    /// The same, and light leaves as the field under the surface says: gathered along the ray of view from φ at the surface and below it, and once
-    /// scattered light marched. Needs [`Frame::view`](crate::Frame::view), for the texture is then that camera's; without one, and through a surface
+    /// The same, and light leaves as the field under the surface says: gathered along the ray of view from φ at the surface and below it, with light that
+    /// scattered once or twice. Needs [`Frame::view`](crate::Frame::view), for the texture is then that camera's; without one, and through a surface
     /// that refracts (an index other than 1), it is [`Boundary`](Self::Boundary).
     BoundaryLayers,
 }
