@@ -358,7 +358,7 @@ fn balls_are_as_bright_as(exact: &[[f64; 5]; 3], bound: f64) -> Check {
     at_most("balls in a sky", apart(&fixture, &found, &exact), bound)
 }
 
-/// Measured 2.0 %, most of it at the rim of the smallest, and more than four times that where two balls are taken for each other.
+/// Measured 2.0 %, most of it at the middle and the rim of the smallest.
 #[test]
 fn small_balls_are_as_bright_as_they_are() {
     holds(balls_are_as_bright_as(&BALLS, 0.02));
