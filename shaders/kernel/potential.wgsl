@@ -273,10 +273,6 @@ fn all_strata(s: Strata) -> Mean {
     return m;
 }
 
-fn deepest(s: Strata) -> f32 {
-    return max(s.ways[STRATA - 1u].x, max(s.ways[STRATA - 1u].y, s.ways[STRATA - 1u].z));
-}
-
 fn ways(s: Strata, k: u32) -> vec4f {
     return vec4f(s.ways[k].rgb, 0.0);
 }

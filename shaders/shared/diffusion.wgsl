@@ -61,6 +61,11 @@ struct Strata {
     rises: array<vec4f, STRATA>,
 }
 
+// The longest of its ways, mm.
+fn deepest(s: Strata) -> f32 {
+    return max(s.ways[STRATA - 1u].x, max(s.ways[STRATA - 1u].y, s.ways[STRATA - 1u].z));
+}
+
 fn node_index(level: u32, node: u32) -> u32 {
     return transport.offsets[level / 4u][level % 4u] + node;
 }

@@ -55,8 +55,10 @@ fn gathered(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups
     sight.own = parabolas[index];
     sight.other = sight.own;
     sight.places = ALONG * 3.0 / (transport.extinction.x + transport.extinction.y + transport.extinction.z);
-    sight.first = site_above(index, place.xyz + direction * sight.places.x, normal, sight.places.x < MOST_ALONG * chord);
-    sight.second = site_above(sight.first, place.xyz + direction * sight.places.y, normal, sight.places.y < MOST_ALONG * chord);
+    let first = site_above(index, place.xyz + direction * sight.places.x, normal, sight.places.x < MOST_ALONG * chord);
+    let second = site_above(first, place.xyz + direction * sight.places.y, normal, sight.places.y < MOST_ALONG * chord);
+    sight.first = parabolas[first];
+    sight.second = parabolas[second];
     sight.cosine = cosine;
     sight.there = cosine;
     sight.chord = chord;
@@ -75,10 +77,10 @@ fn gathered(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups
 struct Sight {
     own: Parabola,
     other: Parabola,
-    // How far along it is under which other sites, mm.
+    // Those that it passes under so far along it, mm.
+    first: Parabola,
+    second: Parabola,
     places: vec2f,
-    first: u32,
-    second: u32,
     cosine: f32,
     there: f32,
     // mm.
@@ -108,16 +110,8 @@ fn many(sight: Sight) -> vec3f {
     let near_end = depth_along(own.thickness, sight.cosine, end, chord);
     let far_begin = depth_along(other.thickness, sight.there, chord - begin, chord);
     let far_end = depth_along(other.thickness, sight.there, chord - end, chord);
-    let first = parabolas[sight.first];
-    let second = parabolas[sight.second];
-    let begins = deep_at(near_begin);
-    let ends = deep_at(far_end);
-    var row: Row;
-    row.own = own;
-    row.first = parabolas[sight.first];
-    row.second = parabolas[sight.second];
-    var before = max(fluence_along(row, weights(sight, begin), begins), vec3f(0.0));
-    let behind = max(fluence_at(other, ends), vec3f(0.0)) + beam_along(row, weights(sight, end), deep_at(near_end));
+    var before = max(fluence_along(sight, weights(sight, begin), deep_at(near_begin)), vec3f(0.0));
+    let behind = max(fluence_at(other, deep_at(far_end)), vec3f(0.0)) + beam_along(sight, weights(sight, end), deep_at(near_end));
     var decay = transport.decay.rgb * sight.cosine;
     if sight.ends {
         before += beam_at(other, deep_at(far_begin));
@@ -130,8 +124,8 @@ fn many(sight: Sight) -> vec3f {
         let s = min(-log(1.0 - part * share) / extinction, vec3f(chord));
         let near = deep_at(depth_along(own.thickness, sight.cosine, s, chord));
         let w = weights(sight, s);
-        let from_own = beam_along(row, w, near);
-        let whole = fluence_along(row, w, near);
+        let from_own = beam_along(sight, w, near);
+        let whole = fluence_along(sight, w, near);
         var value = whole - from_own;
         if sight.ends {
             let far = deep_at(depth_along(other.thickness, sight.there, chord - s, chord));
@@ -161,19 +155,12 @@ fn weights(sight: Sight, s: vec3f) -> Weights {
     return Weights(1.0 - a, a - b, b);
 }
 
-// The sites that a ray of view passes under.
-struct Row {
-    own: Parabola,
-    first: Parabola,
-    second: Parabola,
+fn fluence_along(sight: Sight, w: Weights, at: Deep) -> vec3f {
+    return w.own * fluence_at(sight.own, at) + w.first * fluence_at(sight.first, at) + w.second * fluence_at(sight.second, at);
 }
 
-fn fluence_along(row: Row, w: Weights, at: Deep) -> vec3f {
-    return w.own * fluence_at(row.own, at) + w.first * fluence_at(row.first, at) + w.second * fluence_at(row.second, at);
-}
-
-fn beam_along(row: Row, w: Weights, at: Deep) -> vec3f {
-    return w.own * beam_at(row.own, at) + w.first * beam_at(row.first, at) + w.second * beam_at(row.second, at);
+fn beam_along(sight: Sight, w: Weights, at: Deep) -> vec3f {
+    return w.own * beam_at(sight.own, at) + w.first * beam_at(sight.first, at) + w.second * beam_at(sight.second, at);
 }
 
 // sinh(y·length) / sinh(length): where there are no sources φ between two places is that of the way from either.
