@@ -26,6 +26,17 @@ struct Transport {
     // Of the atlas, and 4^l of them make up a site.
     texel_count: u32,
     texels_per_site: u32,
+    // By how many mean free paths the exact field at the surface is that of a shallower place, how fast that falls off with them, and the depth that it makes
+    // the surface of.
+    hopf: vec3f,
+    // Of diffuse light outside, what gets in.
+    open: f32,
+    // Around a ball: how much more leaves per fluence, over D/R, and over mean free paths by R how much more diffusion lacks.
+    bend: f32,
+    along: f32,
+    // Power of the cosine inside by which what diffusion lacks is less than its share of what scattered twice.
+    lean: f32,
+    padding0: f32,
     // Millimetres.
     eye: vec3f,
     // Where light begins among the bounds of sources.
@@ -70,9 +81,9 @@ fn node_index(level: u32, node: u32) -> u32 {
     return transport.offsets[level / 4u][level % 4u] + node;
 }
 
-// By how many mean free paths the exact field at an optical depth is that of a shallower one: .7104 − q, with Hopf's function q.
+// By how many mean free paths the exact field at an optical depth is that of a shallower one: z_e − q, with Hopf's function q.
 fn hopf_shift(depth: vec3f) -> vec3f {
-    return 0.1331 * exp(-3.4 * max(depth, vec3f(0.0)));
+    return transport.hopf.x * exp(-transport.hopf.y * max(depth, vec3f(0.0)));
 }
 
 // Depth of the value below the surface, in mean free paths, and no deeper than this share of the way to the other side.
@@ -86,16 +97,17 @@ fn layer_depth(thickness: f32) -> vec4f {
 }
 
 // What leaves per fluence at a surface of this mean curvature, 1/mm. In a ball r φ is what φ is in a slab, so that its slope is steeper by φ / R than under a
-// plane (Davison and Sykes, Neutron Transport Theory, 1957); around a cavity it is less steep, and around a small one about half.
+// plane (Davison and Sykes, Neutron Transport Theory, 1957); around a cavity it is less steep, and around a small one about half. Behind a surface that
+// refracts that counts less: what it throws back inside runs along it.
 // Balls smaller than a mean free path and a half are no matter of diffusion.
 fn robin(bulge: f32) -> vec3f {
     let plane = transport.robin.rgb;
-    return plane + clamp(transport.diffusion.rgb * bulge, -0.5 * plane, 0.5 * plane);
+    return plane + clamp(transport.bend * transport.diffusion.rgb * bulge, -0.5 * plane, 0.5 * plane);
 }
 
-// How much less leaves than the boundary's share of φ, per light that comes in.
-fn mirrored(robin: vec3f) -> vec3f {
-    return 4.0 * robin - 1.0;
+// What crosses a surface outwards, less what comes in, Γ. Light that is the same everywhere is η² times as bright inside.
+fn net_flux(robin: vec3f, fluence: vec3f, comes_in: vec3f) -> vec3f {
+    return robin * (fluence - 4.0 * transport.eta * transport.eta * comes_in);
 }
 
 fn luminance(light: vec3f) -> f32 {

@@ -18,9 +18,6 @@ struct Parabola {
     padding0: f32,
 }
 
-// Optical depth that Hopf's function makes the surface of.
-const SURFACE: f32 = 0.096;
-
 // A depth, for all sites whose light gets there.
 struct Deep {
     // Mean free paths, and by how many that is shallower with Hopf's function.
@@ -32,21 +29,27 @@ struct Deep {
 
 fn deep_at(depth: vec3f) -> Deep {
     let optical = transport.extinction.rgb * depth;
-    let x = max(optical, vec3f(SURFACE));
+    let x = max(optical, vec3f(transport.hopf.z));
     let shift = hopf_shift(optical);
+    if transport.eta > 1.0 {
+        // Within the critical angle all is nearly as deep.
+        let critical = sqrt(1.0 - 1.0 / (transport.eta * transport.eta));
+        let mean = 2.0 / 3.0 * (1.0 - critical * critical * critical) * transport.eta * transport.eta;
+        return Deep(optical, shift, mean_way(x, min(shift, vec3f(transport.hopf.z)), 1.0 / mean));
+    }
     // 2 E₂(x) by two exponentials.
-    let sky = 0.3 * mean_way(x, min(shift, vec3f(SURFACE)), 0.9) + 0.7 * mean_way(x, min(shift, vec3f(SURFACE)), 2.1);
+    let sky = 0.3 * mean_way(x, min(shift, vec3f(transport.hopf.z)), 0.9) + 0.7 * mean_way(x, min(shift, vec3f(transport.hopf.z)), 2.1);
     return Deep(optical, shift, sky);
 }
 
 // Minus the particular solution of light that enters at a place, αE/D times the mean way from a depth to what scatters deeper, with depths as Hopf's function
 // makes them: of a beam e^−kx, and of an even sky.
 fn beam_at(p: Parabola, at: Deep) -> vec3f {
-    let beam = mean_way(max(at.optical, vec3f(SURFACE)), min(at.shift, vec3f(SURFACE)), 1.0 / max(p.cosine, 0.05));
+    let beam = mean_way(max(at.optical, vec3f(transport.hopf.z)), min(at.shift, vec3f(transport.hopf.z)), 1.0 / max(p.cosine, 0.05));
     let above = max(at.shift - at.optical, vec3f(0.0));
     return transport.albedo.rgb * p.light / (transport.diffusion.rgb * transport.extinction.rgb) * (mix(beam, at.sky, p.around) + above);
 }
 
 fn mean_way(x: vec3f, shift: vec3f, k: f32) -> vec3f {
-    return exp(-k * x) * (1.0 / k + shift * (3.4 / (k + 3.4)));
+    return exp(-k * x) * (1.0 / k + shift * (transport.hopf.y / (k + transport.hopf.y)));
 }

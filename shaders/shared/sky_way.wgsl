@@ -5,6 +5,21 @@ const SKY_POINTS: u32 = 3u;
 const SKY_COSINES: array<f32, 3> = array<f32, 3>(0.012702, 0.25, 0.787298);
 const SKY_WEIGHTS: array<f32, 3> = array<f32, 3>(0.062612, 0.444444, 0.492943);
 
+// Cosine inside from which on light gets in and out.
+fn critical_cosine() -> f32 {
+    return sqrt(max(1.0 - 1.0 / (transport.eta * transport.eta), 0.0));
+}
+
+// Cosines inside of an even sky, and of ∫ f(μ) dμ over them weights for light that brings in one unit of irradiance.
+fn sky_cosine(point: u32) -> f32 {
+    return mix(critical_cosine(), 1.0, SKY_COSINES[point]);
+}
+
+fn sky_weight(point: u32) -> f32 {
+    let eta = max(transport.eta, 1.0);
+    return 2.0 * eta * eta * (1.0 - critical_cosine()) * SKY_WEIGHTS[point];
+}
+
 // From a depth to the surface, in a direction at this cosine to the normal, mm. Behind the middle of its ball a body that is thicker goes straight on.
 fn way_out(depth: vec3f, thickness: f32, bulge: f32, cosine: f32) -> vec3f {
     let curved = max(bulge, 0.0);

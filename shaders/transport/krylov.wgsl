@@ -2,9 +2,11 @@
 // Schultz 1983), whose last few directions are kept with what A makes of them, from frame to frame too.
 
 // Directions there is room for.
-const DIRECTIONS: u32 = 4u;
-// Of pairs of directions, of each with a target, the target's square and that of what is given.
-const PRODUCTS: u32 = 16u;
+const DIRECTIONS: u32 = 6u;
+// Of pairs of directions.
+const PAIRS: u32 = DIRECTIONS * (DIRECTIONS + 1u) / 2u;
+// Those, of each with a target, the target's square and that of what is given.
+const PRODUCTS: u32 = PAIRS + DIRECTIONS + 2u;
 // What is darker than this share of the mean weighs no more.
 const DARK: f32 = 1e-3;
 // A direction of which less than this is its own, squared, is rounding.
@@ -18,7 +20,7 @@ struct State {
     // Mean of what is given, and the area.
     mean: vec4f,
     // Of each direction.
-    weights: array<vec4f, 4>,
+    weights: array<vec4f, DIRECTIONS>,
     // Of the newest direction.
     scale: vec4f,
     // Share of what is given that is left, in the weighted norm.
@@ -34,7 +36,7 @@ struct State {
 @group(0) @binding(0) var<uniform> transport: Transport;
 // φ_Q.
 @group(0) @binding(1) var<storage, read> given: array<vec4f>;
-// Σ A [(c_G φ − 4 c_G Γ) G + φ H] of the trial, and c in w.
+// Σ A [c_G (φ − 4 η² Γ) G + φ H] of the trial, and c in w.
 @group(0) @binding(2) var<storage, read> sums: array<vec4f>;
 @group(0) @binding(3) var<storage, read> shapes: array<Shape>;
 // Each direction, what A makes of it and what of it comes in again, then the same of the solution so far.
@@ -43,8 +45,8 @@ struct State {
 @group(0) @binding(6) var<storage, read_write> partial: array<vec4f>;
 // φ of the trial, then the best there is and its Γ.
 @group(0) @binding(7) var<storage, read_write> fluence: array<vec4f>;
-// Of the trial, from `source_count` on: Γ.
-@group(0) @binding(8) var<storage, read> leaving: array<vec4f>;
+// From `source_count` on: Γ, of the trial, and before that is sent of the solution that it begins with.
+@group(0) @binding(8) var<storage, read_write> leaving: array<vec4f>;
 
 var<workgroup> shared_sums: array<vec4f, 64>;
 
@@ -121,6 +123,7 @@ fn start(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: v
         directions[solution(index) + 2u] = vec4f(0.0);
     }
     fluence[index] = directions[solution(index)];
+    leaving[transport.source_count + index] = directions[solution(index) + 2u];
 }
 
 // What A makes of the solution, when it was the trial.
@@ -157,7 +160,7 @@ fn project_residual(@builtin(workgroup_id) group: vec3u, @builtin(local_invocati
 }
 
 fn project(group: u32, local: u32, of_direction: bool) {
-    var products: array<vec3f, 16>;
+    var products: array<vec3f, PRODUCTS>;
     let mean = max(state.mean.rgb, vec3f(1e-30));
     for (var index = group * 64u + local; index < transport.site_count; index += transport.groups * 64u) {
         let area = shapes[index].area;
@@ -165,7 +168,7 @@ fn project(group: u32, local: u32, of_direction: bool) {
         // √A over φ_Q^¾: a body lit from behind is dark where it is seen, and errors there count.
         let bright = max(given[index].rgb / mean, vec3f(DARK));
         let weight = sqrt(area / max(state.mean.w, 1e-30)) / (mean * sqrt(bright) * sqrt(sqrt(bright)));
-        var columns: array<vec3f, 4>;
+        var columns: array<vec3f, DIRECTIONS>;
         for (var k = 0u; k < state.count; k++) {
             if of_direction && k == state.next { continue; }
             columns[k] = weight * directions[place(k, index) + 1u].rgb;
@@ -179,10 +182,10 @@ fn project(group: u32, local: u32, of_direction: bool) {
                 products[at] += columns[a] * columns[b];
                 at += 1u;
             }
-            products[10u + a] += columns[a] * goal;
+            products[PAIRS + a] += columns[a] * goal;
         }
-        products[14] += goal * goal;
-        products[15] += weight * weight * given[index].rgb * given[index].rgb;
+        products[PAIRS + DIRECTIONS] += goal * goal;
+        products[PRODUCTS - 1u] += weight * weight * given[index].rgb * given[index].rgb;
     }
     for (var k = 0u; k < PRODUCTS; k++) {
         let all = reduced(vec4f(products[k], 0.0), local);
@@ -190,7 +193,7 @@ fn project(group: u32, local: u32, of_direction: bool) {
     }
 }
 
-var<workgroup> totals: array<vec4f, 16>;
+var<workgroup> totals: array<vec4f, PRODUCTS>;
 
 // How much of each direction comes closest to the target.
 fn weigh(local: u32) {
@@ -202,7 +205,7 @@ fn weigh(local: u32) {
     }
     workgroupBarrier();
     if local > 0u { return; }
-    var weights: array<vec3f, 4>;
+    var weights: array<vec3f, DIRECTIONS>;
     for (var channel = 0u; channel < 3u; channel++) {
         let solved = least_squares(channel);
         for (var k = 0u; k < DIRECTIONS; k++) { weights[k][channel] = solved[k]; }
@@ -212,8 +215,8 @@ fn weigh(local: u32) {
 
 // What is left of the target's square.
 fn rest() -> vec4f {
-    var square = totals[14];
-    for (var k = 0u; k < DIRECTIONS; k++) { square -= state.weights[k] * totals[10u + k]; }
+    var square = totals[PAIRS + DIRECTIONS];
+    for (var k = 0u; k < DIRECTIONS; k++) { square -= state.weights[k] * totals[PAIRS + k]; }
     return square;
 }
 
@@ -222,7 +225,7 @@ fn weigh_direction(@builtin(local_invocation_index) local: u32) {
     weigh(local);
     if local > 0u { return; }
     let own = rest();
-    let counts = own > ROUNDING * totals[14];
+    let counts = own > ROUNDING * totals[PAIRS + DIRECTIONS];
     state.scale = select(vec4f(0.0), inverseSqrt(max(own, vec4f(1e-37))), counts);
 }
 
@@ -230,19 +233,19 @@ fn weigh_direction(@builtin(local_invocation_index) local: u32) {
 fn weigh_residual(@builtin(local_invocation_index) local: u32) {
     weigh(local);
     if local > 0u { return; }
-    let left = max(rest(), vec4f(0.0)) / max(totals[15], vec4f(1e-30));
+    let left = max(rest(), vec4f(0.0)) / max(totals[PRODUCTS - 1u], vec4f(1e-30));
     state.residual = sqrt(left);
     // Not `>`: that lets NaN pass.
-    let before = totals[14] / max(totals[15], vec4f(1e-30));
+    let before = totals[PAIRS + DIRECTIONS] / max(totals[PRODUCTS - 1u], vec4f(1e-30));
     let failed = !(before.x < HOPELESS && before.y < HOPELESS && before.z < HOPELESS);
     state.failed = select(0u, 1u, failed);
     state.failures += state.failed;
 }
 
 // By Cholesky's factors of the matrix of products; a direction that the others before it make up is left out.
-fn least_squares(channel: u32) -> vec4f {
-    var factor: array<vec4f, 4>;
-    var right = vec4f(0.0);
+fn least_squares(channel: u32) -> array<f32, DIRECTIONS> {
+    var factor: array<array<f32, DIRECTIONS>, DIRECTIONS>;
+    var right: array<f32, DIRECTIONS>;
     for (var a = 0u; a < DIRECTIONS; a++) {
         for (var b = 0u; b < a; b++) {
             var entry = totals[a * (a + 1u) / 2u + b][channel];
@@ -254,11 +257,11 @@ fn least_squares(channel: u32) -> vec4f {
         for (var k = 0u; k < a; k++) { left -= factor[a][k] * factor[a][k]; }
         let counts = left > ROUNDING * own && own > 0.0;
         factor[a][a] = select(0.0, sqrt(max(left, 0.0)), counts);
-        var entry = totals[10u + a][channel];
+        var entry = totals[PAIRS + a][channel];
         for (var k = 0u; k < a; k++) { entry -= factor[a][k] * right[k]; }
         right[a] = select(0.0, entry / factor[a][a], counts);
     }
-    var weights = vec4f(0.0);
+    var weights: array<f32, DIRECTIONS>;
     for (var k = 0u; k < DIRECTIONS; k++) {
         let a = DIRECTIONS - 1u - k;
         var entry = right[a];
@@ -311,6 +314,7 @@ fn advance(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups:
     directions[own] = vec4f(value, 0.0);
     directions[own + 1u] = vec4f(image, 0.0);
     directions[own + 2u] = vec4f(comes, 0.0);
+    leaving[transport.source_count + index] = vec4f(comes, 0.0);
     let left = given[index].rgb - image;
     fluence[index] = vec4f(value + left / closure(index), 0.0);
     // Steps are those that serve most sites. Of whose own equation much is left then, that is settled with nobody else: it would be a speck.

@@ -23,9 +23,8 @@ fn robin_of(site: u32) -> vec3f {
 fn diffuse(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_index) local: u32) {
     let index = item_index(group, groups, local);
     if index >= transport.site_count { return; }
-    let robin = robin_of(index);
     let comes_in = fluence[2u * transport.site_count + index].rgb;
-    let leaves = robin * fluence[transport.site_count + index].rgb - mirrored(robin) * comes_in;
+    let leaves = net_flux(robin_of(index), fluence[transport.site_count + index].rgb, comes_in) + transport.open * comes_in;
     site_exitance[index] = vec4f(max(leaves, vec3f(0.0)), 0.0);
 }
 
@@ -44,9 +43,9 @@ fn parabola(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups
     own.light = light;
     own.open = entered[transport.site_count + index].rgb;
     own.bulge = entered[transport.site_count + index].w;
-    own.surface = fluence[transport.site_count + index].rgb + beam_at(own, deep_at(SURFACE / transport.extinction.rgb));
+    own.surface = fluence[transport.site_count + index].rgb + beam_at(own, deep_at(transport.hopf.z / transport.extinction.rgb));
     let comes_in = fluence[2u * transport.site_count + index].rgb;
-    let flux = robin_of(index) * (fluence[transport.site_count + index].rgb - 4.0 * comes_in);
+    let flux = net_flux(robin_of(index), fluence[transport.site_count + index].rgb, comes_in);
     var under = (lit_below[index].rgb - sent_below[index].rgb) / clamp(sent_below[index].w, 0.2, 1.2);
     let slope = (flux - transport.albedo.rgb * light) / transport.diffusion.rgb;
     under -= spread_out(source, light, thickness, depth);
@@ -76,7 +75,7 @@ fn spread_out(source: Strata, light: vec3f, thickness: f32, depth: vec3f) -> vec
         let away = 2.0 * fold * (above - (1.0 - exp(-above))) / max(1.0 - exp(-(own.to - own.begin)), vec3f(1e-6)) + sheet - depth;
         sum += SHARES[k] * select(vec3f(0.0), away - abs(depth - sheet), (depth > begin) & (depth < to));
     }
-    let around = source.ways[0].w;
+    let around = select(source.ways[0].w, 0.0, transport.eta > 1.0);
     let optical = depth * extinction / LAYER;
     let away = mix(sum, SKY_SPREAD * optical * optical / extinction, around);
     return transport.albedo.rgb * light * share * 0.5 * away / transport.diffusion.rgb;

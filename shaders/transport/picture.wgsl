@@ -21,6 +21,8 @@ const ALONG: vec2f = vec2f(0.6, 1.6);
 const MOST_ALONG: f32 = 0.5;
 // Steps along a ray of view.
 const STEPS: u32 = 10u;
+// Surfaces that bend more, in mean free paths, count as those.
+const MOST_BENT: f32 = 0.1;
 // A ray that grazes the surface by less runs along it.
 const GRAZING: f32 = 0.02;
 
@@ -43,11 +45,12 @@ fn gathered(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups
     if index >= transport.site_count { return; }
     let place = site_positions[index];
     let normal = normalize(site_normals[index].xyz);
-    let direction = normalize(place.xyz - transport.eye);
-    let facing = -dot(direction, normal);
+    let outside = normalize(place.xyz - transport.eye);
+    let facing = -dot(outside, normal);
     // Beyond the rim a site may be seen that is turned away itself.
     if facing < -0.2 { return; }
-    let cosine = max(facing, GRAZING);
+    let cosine = max(refracted_cosine(transport.eta, max(facing, 0.0)), GRAZING);
+    let direction = select((outside + facing * normal) / transport.eta - cosine * normal, outside, transport.eta == 1.0);
     let width = sqrt(place.w);
     let far = first_crossing(place.xyz, direction, 0.1 * width, 1.0);
     let chord = max(far.t, 1e-6);
@@ -68,9 +71,13 @@ fn gathered(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups
         sight.there = max(dot(normalize(site_normals[far.site].xyz), direction), GRAZING);
     }
     // What diffusion lacks of light that scattered again comes last.
-    let most = many(sight) + once(sight, place.xyz, direction, width);
-    let radiance = most + transport.shortfall.rgb * twice(place.xyz, direction, cosine, chord);
-    site_exitance[index] = vec4f(max(PI * radiance, vec3f(0.0)), 0.0);
+    let most = many(sight) + thrown_back(sight) + once(sight, place.xyz, direction, normal, width);
+    let bent = clamp(sight.own.bulge / transport.extinction.rgb, vec3f(0.0), vec3f(MOST_BENT));
+    let lacking = transport.shortfall.rgb * pow(cosine, -transport.lean) * (1.0 + transport.along * bent);
+    let radiance = most + lacking * twice(place.xyz, direction, cosine, chord);
+    // Outside light is η² times less bright; what leaves under other angles is a matter of the material.
+    let leaves = PI * transport.open / (transport.eta * transport.eta);
+    site_exitance[index] = vec4f(max(leaves * radiance, vec3f(0.0)), 0.0);
 }
 
 // A ray of view inside: from the site that is seen to the one at its other end, with the cosines there.
@@ -142,6 +149,15 @@ fn many(sight: Sight) -> vec3f {
     return transport.albedo.rgb / (4.0 * PI) * share * sum / f32(STEPS);
 }
 
+// By the surface at the other end, of light that is there as bright in all directions.
+fn thrown_back(sight: Sight) -> vec3f {
+    if transport.eta == 1.0 || !sight.ends { return vec3f(0.0); }
+    let surface = deep_at(vec3f(0.0));
+    let fluence = max(fluence_at(sight.other, surface) - beam_at(sight.other, surface), vec3f(0.0));
+    let reflected = 1.0 - fresnel_transmittance(1.0 / transport.eta, sight.there);
+    return reflected * fluence / (4.0 * PI) * exp(-min(transport.extinction.rgb * sight.chord, vec3f(80.0)));
+}
+
 struct Weights {
     own: vec3f,
     first: vec3f,
@@ -174,20 +190,23 @@ const PLACES: u32 = 7u;
 const SPACING: array<f32, PLACES> = array<f32, PLACES>(0.0, 0.02, 0.08, 0.25, 0.8, 2.0, 5.0);
 
 // Scattered once.
-fn once(sight: Sight, position: vec3f, direction: vec3f, width: f32) -> vec3f {
+fn once(sight: Sight, position: vec3f, direction: vec3f, normal: vec3f, width: f32) -> vec3f {
     let extinction = transport.extinction.rgb;
     let chord = sight.chord;
     let longest = 1.0 / min(extinction.x, min(extinction.y, extinction.z));
     var sum = vec3f(0.0);
-    for (var k = 0u; k < lighting.light_count; k++) {
-        if lighting.lights[k].kind > POINT { continue; }
+    for (var k = 0u; k < beam_count(); k++) {
         var before = vec3f(0.0);
+        // Of the surface by which light enters, as far as that is known.
+        var facet = normal;
         var way = 0.0;
         var optical = 0.0;
         for (var place = 0u; place < PLACES; place++) {
             let s = min(SPACING[place] * longest, chord);
             let at = min(max(s, 0.05 * width), 0.5 * (s + chord));
-            var found = arriving_at(k, position + direction * at, width);
+            if place == 0u && transport.eta != 1.0 { facet = arriving_at(k, position + direction * at, facet, width).facet; }
+            var found = arriving_at(k, position + direction * at, facet, width);
+            facet = found.facet;
             if place == 0u && found.is_here { found.way = 0.0; }
             if place > 0u {
                 let begins = extinction * optical;
@@ -217,18 +236,29 @@ struct Arriving {
     way: f32,
     // Whether light enters by the surface that is seen.
     is_here: bool,
+    // Normal where it enters.
+    facet: vec3f,
 }
 
 // Of a light at a place inside, as if nothing were used up on the way.
-fn arriving_at(index: u32, position: vec3f, width: f32) -> Arriving {
-    let comes = arrival(index, position, width * width, vec3f(0.0, 1.0, 0.0));
-    var far = FAR;
-    if lighting.lights[index].kind == POINT { far = length(lighting.lights[index].vector - position); }
-    let entry = crossing(position, comes.to_light, 0.0, far, 1.0, false);
-    if entry.site == NO_SITE { return Arriving(vec3f(0.0), 0.0, false); }
+fn arriving_at(index: u32, position: vec3f, facet: vec3f, width: f32) -> Arriving {
+    let comes = beam(index, position, width * width, vec3f(0.0, 1.0, 0.0));
+    if all(comes.strength <= vec3f(0.0)) { return Arriving(vec3f(0.0), 0.0, false, facet); }
+    let aslant = dot(facet, comes.to_light);
+    let bent = (comes.to_light - aslant * facet) / transport.eta + refracted_cosine(transport.eta, aslant) * facet;
+    let to_surface = select(bent, comes.to_light, transport.eta == 1.0 || aslant <= 0.0);
+    let entry = crossing(position, to_surface, 0.0, comes.far, 1.0, false);
+    if entry.site == NO_SITE { return Arriving(vec3f(0.0), 0.0, false, facet); }
+    let normal = normalize(site_normals[entry.site].xyz);
+    let outside = dot(normal, comes.to_light);
+    var enters = 1.0;
+    if transport.eta != 1.0 {
+        if outside <= 0.0 { return Arriving(vec3f(0.0), entry.t, false, facet); }
+        enters = outside * fresnel_transmittance(transport.eta, outside) / max(refracted_cosine(transport.eta, outside), GRAZING);
+    }
     let at = site_positions[entry.site].xyz;
-    let is_dark = any(at < lighting.lights[index].region_low) || any(at > lighting.lights[index].region_high);
-    return Arriving(select(comes.strength * parabolas[entry.site].open, vec3f(0.0), is_dark), entry.t, entry.t < width);
+    let is_dark = any(at < comes.low) || any(at > comes.high);
+    return Arriving(select(enters * comes.strength * parabolas[entry.site].open, vec3f(0.0), is_dark), entry.t, entry.t < width, normal);
 }
 
 // Of an even sky, used up along a ray of view: what comes in by this side and by the other.
@@ -247,12 +277,12 @@ fn around(sight: Sight) -> vec3f {
         var here = vec3f(0.0);
         var there = vec3f(0.0);
         for (var point = 0u; point < SKY_POINTS; point++) {
-            let near = way_out(depth, own.thickness, own.bulge, SKY_COSINES[point]);
-            let far = way_out(own.thickness - depth, own.thickness, own.bulge, SKY_COSINES[point]);
-            here += SKY_WEIGHTS[point] * exp(-min(extinction * near, vec3f(80.0)));
-            there += SKY_WEIGHTS[point] * exp(-min(extinction * far, vec3f(80.0)));
+            let near = way_out(depth, own.thickness, own.bulge, sky_cosine(point));
+            let far = way_out(own.thickness - depth, own.thickness, own.bulge, sky_cosine(point));
+            here += sky_weight(point) * exp(-min(extinction * near, vec3f(80.0)));
+            there += sky_weight(point) * exp(-min(extinction * far, vec3f(80.0)));
         }
         sum += light * here + light_there * there;
     }
-    return 2.0 * share * sum / f32(STEPS);
+    return share * sum / f32(STEPS);
 }

@@ -29,20 +29,15 @@ fn robin_of(site: u32) -> vec3f {
     return robin(entered[transport.site_count + site].w);
 }
 
-// Γ follows from what leaves, and that from Γ: from none, so that what the equation makes of a trial is linear in it.
-@compute @workgroup_size(64)
-fn forget(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_index) local: u32) {
-    let index = item_index(group, groups, local);
-    if index < transport.site_count { leaving[returning_place(index)] = vec4f(0.0); }
-}
-
+// Γ follows from what leaves, and that from Γ: here from what it is for the solution so far.
 @compute @workgroup_size(64)
 fn leave(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_index) local: u32) {
     let index = item_index(group, groups, local);
     if index >= transport.site_count { return; }
-    let robin = robin_of(index);
-    let exitance = robin * fluence[index].rgb - mirrored(robin) * leaving[returning_place(index)].rgb;
-    leaving[index] = vec4f(shapes[index].area * exitance, 0.0);
+    // What of Γ does not get in goes on.
+    let comes_in = leaving[returning_place(index)].rgb;
+    let goes_on = net_flux(robin_of(index), fluence[index].rgb, comes_in) + comes_in;
+    leaving[index] = vec4f(shapes[index].area * goes_on, 0.0);
 }
 
 @compute @workgroup_size(64)
@@ -62,7 +57,7 @@ fn come_in(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups:
     let index = item_index(group, groups, local);
     if index >= transport.site_count { return; }
     let arrives = returning(index, normalize(shapes[index].normal));
-    let own = mirrored(robin_of(index)) * arrives.w;
+    let own = (4.0 * transport.eta * transport.eta * robin_of(index) - 1.0) * arrives.w;
     leaving[returning_place(index)] = vec4f((arrives.rgb + own * leaving[returning_place(index)].rgb) / (1.0 + own), 0.0);
 }
 
@@ -83,7 +78,7 @@ fn charge_found(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) gr
 
 fn send(index: u32, fluence: vec3f, comes_in: vec3f) {
     let shape = shapes[index];
-    let power = shape.area * robin_of(index) * (fluence - 4.0 * comes_in);
+    let power = shape.area * net_flux(robin_of(index), fluence, comes_in);
     // Without absorption φ is the same everywhere: what is in w then tells how much of all directions is body.
     let moment = shape.area * vec4f(transport.diffusion.rgb * fluence, -1.0);
     charges[transport.source_count + index] =

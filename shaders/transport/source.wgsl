@@ -31,31 +31,31 @@ fn enter(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: v
     let width = sqrt(place.w);
     let thickness = first_crossing(position, -normal, 0.1 * width, 1.0).t;
     var diffuse = site_lights[index].irradiance.rgb;
-    var beam = vec3f(0.0);
+    var direct = vec3f(0.0);
     var through = vec3f(0.0);
     var unshadowed = vec3f(0.0);
     var direction = vec3f(0.0);
     var cosines = 0.0;
-    for (var k = 0u; k < lighting.light_count; k++) {
-        let arriving = arrival(k, position, width * width, normal);
+    let is_told_from_sky = has_sky();
+    for (var k = 0u; k < beam_count(); k++) {
+        let arriving = beam(k, position, width * width, normal);
         let outside = dot(normal, arriving.to_light);
-        if lighting.lights[k].kind > POINT || outside <= 0.0 { continue; }
-        if any(position < lighting.lights[k].region_low) || any(position > lighting.lights[k].region_high) { continue; }
+        if outside <= 0.0 || all(arriving.strength <= vec3f(0.0)) { continue; }
+        if any(position < arriving.low) || any(position > arriving.high) { continue; }
         let light = arriving.strength * outside * fresnel_transmittance(transport.eta, outside);
         let inside = refracted_cosine(transport.eta, outside);
         let inwards = (outside * normal - arriving.to_light) / transport.eta - normal * inside;
-        let far = select(FAR, length(lighting.lights[k].vector - position), lighting.lights[k].kind == POINT);
         unshadowed += light;
         // Depth maps say who is lit, where there is no sky to be told from.
         var crossed = 0.0;
-        if lighting.ambient_count > 0u || any(diffuse < LIT * light) { crossed = way_inside(position, arriving.to_light, CLEAR * width, far); }
+        if is_told_from_sky || any(diffuse < LIT * light) { crossed = way_inside(position, arriving.to_light, CLEAR * width, arriving.far); }
         // What the depth map lets through comes straight; the rest through what is in the way.
         var straight = vec3f(0.0);
-        if crossed == 0.0 || lighting.ambient_count == 0u { straight = min(light, diffuse); }
+        if crossed == 0.0 || !is_told_from_sky { straight = min(light, diffuse); }
         diffuse -= straight;
         var rest = vec3f(0.0);
         if crossed > 0.0 && transport.eta == 1.0 { rest = max(light * exp(-transport.extinction.rgb * crossed) - straight, vec3f(0.0)); }
-        beam += straight;
+        direct += straight;
         through += rest;
         let weight = luminance(straight + rest);
         direction += weight * inwards;
@@ -66,8 +66,8 @@ fn enter(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: v
     let cone = 2.0 / 3.0 * (1.0 - pow(max(1.0 - 1.0 / (transport.eta * transport.eta), 0.0), 1.5)) * transport.eta * transport.eta;
     direction -= weight * min(cone, 1.0) * normal;
     cosines += weight * min(cone, 1.0);
-    let light = (beam + through + diffuse) * tint;
-    let whole = luminance(beam + through) + weight;
+    let light = (direct + through + diffuse) * tint;
+    let whole = luminance(direct + through) + weight;
     if whole > 0.0 {
         direction /= whole;
         cosines /= whole;
@@ -104,14 +104,14 @@ fn enter(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: v
     // Of an even sky, some crosses in a shorter way than the middle one.
     var kept = vec3f(1.0);
     for (var k = 0u; k < SKY_POINTS; k++) {
-        let way = way_out(vec3f(thickness), thickness, bulge, SKY_COSINES[k]);
-        kept -= 2.0 * SKY_COSINES[k] * SKY_WEIGHTS[k] * exp(-min(transport.extinction.rgb * way, vec3f(80.0)));
+        let way = way_out(vec3f(thickness), thickness, bulge, sky_cosine(k));
+        kept -= sky_cosine(k) * sky_weight(k) * exp(-min(transport.extinction.rgb * way, vec3f(80.0)));
     }
     let used = mix(share, kept, own.ways[0].w);
     let power = transport.albedo.rgb * light * used * place.w;
     charges[index].power = vec4f(power, 0.0);
     entered[index] = vec4f(light, hidden_sky(index, position, normal, width));
-    let open = select(vec3f(0.0), (beam + through) / max(unshadowed, vec3f(1e-30)), unshadowed > vec3f(0.0));
+    let open = select(vec3f(0.0), (direct + through) / max(unshadowed, vec3f(1e-30)), unshadowed > vec3f(0.0));
     entered[transport.site_count + index] = vec4f(min(open, vec3f(1.0)), bulge);
 }
 

@@ -74,6 +74,17 @@ fn kronrod(f: &impl Fn(f64) -> f64, from: f64, to: f64) -> (f64, f64) {
     (half * fine, half * (fine - coarse).abs())
 }
 
+/// Kronrod's 15 nodes over an interval, with their weights.
+#[cfg(test)]
+pub(crate) fn nodes(from: f64, to: f64) -> impl Iterator<Item = (f64, f64)> {
+    let (centre, half) = (0.5 * (from + to), 0.5 * (to - from));
+    let each = NODES.iter().zip(KRONROD);
+    each.flat_map(move |(node, weight)| {
+        let sides = if *node == 0.0 { 1 } else { 2 };
+        [-1.0, 1.0].into_iter().take(sides).map(move |side| (centre + side * half * node, half * weight))
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

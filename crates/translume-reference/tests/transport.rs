@@ -106,6 +106,24 @@ fn a_white_furnace_is_white() {
     }
 }
 
+/// What the surface lets in comes out, as by the diffuse law, which is exact there.
+#[test]
+fn a_white_furnace_that_refracts_is_white() {
+    let subject = sphere().expect("a sphere unwraps");
+    let volume = Volume { sigma_s: [0.7, 1.2, 2.0], sigma_a: [0.0; 3], g: 0.0, ior: 1.3 };
+    let lights = [Light::Ambient { radiance: [1.0; 3], axis: [0.0, 1.0, 0.0], half_angle: PI, shadow: true }];
+    let lawful = subject.picture(volume, &lights, Tier::Boundary);
+    let mask = filled(&lawful);
+    let exact: Vec<[f64; 3]> = lawful.radiance.iter().map(|rgb| rgb.map(f64::from)).collect();
+    let off = |volume| errors(&subject.picture(volume, &lights, Tier::Layers), &exact, &mask);
+    for [error, bias] in off(volume) {
+        // On a thousand sites, as above.
+        assert!(error < 0.06 && bias.abs() < 0.06, "{error} {bias}");
+    }
+    let [[error, _], ..] = off(Volume { sigma_a: [0.05; 3], ..volume });
+    assert!(error > 0.06, "what absorbs must be noticed: {error}");
+}
+
 #[test]
 fn closer_to_paths_than_a_dipole() {
     let subject = sphere().expect("a sphere unwraps");

@@ -305,6 +305,12 @@ pub(crate) struct TransportLayout {
     pub reach_squared: f32,
     pub texel_count: u32,
     pub texels_per_site: u32,
+    pub hopf: [f32; 3],
+    pub open: f32,
+    pub bend: f32,
+    pub along: f32,
+    pub lean: f32,
+    pub padding: f32,
     pub eye: [f32; 3],
     pub light_bounds: u32,
     pub offsets: [[u32; 4]; 4],
@@ -396,13 +402,18 @@ pub(crate) struct ParabolaLayout {
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub(crate) struct StateLayout {
     pub mean: [f32; 4],
-    pub weights: [[f32; 4]; 4],
+    pub weights: [[f32; 4]; StateLayout::DIRECTIONS],
     pub scale: [f32; 4],
     pub residual: [f32; 4],
     pub next: u32,
     pub count: u32,
     pub failed: u32,
     pub failures: u32,
+}
+
+impl StateLayout {
+    /// That the solver keeps.
+    pub const DIRECTIONS: usize = 6;
 }
 
 #[repr(C)]

@@ -5,6 +5,7 @@ use translume::{
     AmbientLight, Camera, DirectionalLight, Error, Light, LookAt, Medium, Method, Profile, Transport, View,
     readback,
 };
+use translume_reference::fresnel::hemispherical_transmittance;
 use translume_reference::gather::Source;
 use translume_reference::path::{Closed, Volume};
 use translume_reference::transport::{Body, Solution, sites};
@@ -68,6 +69,14 @@ fn exitance_is_that_of_dense_sums() {
     holds(agrees(&creature(), THIN, THIN, 0.055));
     let darker = Medium { sigma_a: [0.01, 0.02, 0.2], ..MEDIUM };
     notices(agrees(&sphere_with(48), darker, MEDIUM, 0.03));
+}
+
+/// Of the sphere measured 2.0 %.
+#[test]
+fn exitance_through_a_surface_that_refracts_is_that_of_dense_sums() {
+    let glassy = Medium { ior: 1.4, ..MEDIUM };
+    holds(agrees(&sphere_with(48), glassy, glassy, 0.03));
+    notices(agrees(&sphere_with(48), Medium { ior: 1.3, ..glassy }, glassy, 0.03));
 }
 
 const RINGS: usize = 48;
@@ -307,15 +316,16 @@ fn ball_in_a_sky(medium: Medium) -> Fixture {
 /// Of a white body in a white sky what is seen from an eye, on the side that faces it.
 fn seen_in_a_furnace(medium: Medium, bound: f64) -> Check {
     let fixture = ball_in_a_sky(medium);
+    let white = std::f64::consts::PI * hemispherical_transmittance(medium.ior.into());
     let faces = |source: &Source| source.normal[2] > 0.3;
     let sources: Vec<Source> = fixture.sources();
     let seen: Vec<[f64; 3]> = fixture
         .exitance()
         .into_iter()
         .zip(&sources)
-        .map(|(exitance, source)| if faces(source) { exitance } else { [std::f64::consts::PI; 3] })
+        .map(|(exitance, source)| if faces(source) { exitance } else { [white; 3] })
         .collect();
-    let white = vec![[std::f64::consts::PI; 3]; seen.len()];
+    let white = vec![[white; 3]; seen.len()];
     at_most("furnace, by layers", apart(&fixture, &seen, &white), bound)
 }
 
@@ -325,6 +335,41 @@ fn layers_of_a_white_body_are_white() {
     let white = Medium { sigma_s_prime: [0.2, 0.4, 0.6], sigma_a: [0.0; 3], ior: 1.0 };
     holds(seen_in_a_furnace(white, 0.03));
     notices(seen_in_a_furnace(Medium { sigma_a: [0.002; 3], ..white }, 0.03));
+}
+
+/// What the surface lets in of the sky comes out, whatever the index of refraction.
+#[test]
+fn layers_of_a_white_body_that_refracts_are_white() {
+    for ior in [1.1, 1.3, 1.5] {
+        let white = Medium { sigma_s_prime: [0.2, 0.4, 0.6], sigma_a: [0.0; 3], ior };
+        holds(seen_in_a_furnace(white, 0.02));
+        notices(seen_in_a_furnace(Medium { sigma_a: [0.002; 3], ..white }, 0.02));
+    }
+}
+
+/// Lit by a cone of the sky this wide around a sun, as bright on a plane that faces it.
+fn as_by_a_sun(half_angle: f32, bound: f64) -> Check {
+    let to_light = [0.6, 0.0, -0.8];
+    let seen = |light: Light| {
+        let mut fixture = fixture(&sphere_with(64), THIN, Transport::BoundaryLayers);
+        let (pose, lights) = (Pose::rest(0), [light]);
+        let mut frame = pose.frame(&lights);
+        frame.view = Some(view_from(EYE));
+        fixture.run(&frame);
+        fixture
+    };
+    let sun = seen(sun(to_light));
+    let radiance = 3.0 / (std::f32::consts::PI * half_angle.sin().powi(2));
+    let cone = AmbientLight { radiance: [radiance; 3], axis: to_light, half_angle, shadow: true };
+    let cone = seen(Light::Ambient(cone));
+    at_most("a narrow cone", apart(&sun, &cone.exitance(), &sun.exitance()), bound)
+}
+
+/// A light of some extent comes from one side, too.
+#[test]
+fn a_narrow_cone_of_the_sky_is_a_sun() {
+    holds(as_by_a_sun(0.1, 0.03));
+    notices(as_by_a_sun(1.2, 0.03));
 }
 
 /// Of balls of 3, 6.5 and 10 mean free paths with albedos .99, .99 and .9 in a white sky: exact radiance by the cosine of where it is seen, 1 for the sky's. Each from

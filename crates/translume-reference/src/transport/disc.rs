@@ -121,9 +121,17 @@ pub(super) fn flux(decay: f64, r: f64) -> f64 {
 mod tests {
     use super::*;
     use crate::lights::strata::frame;
+    use crate::transport::coefficients::Boundary;
 
     fn medium(decay: f64) -> Coefficients {
-        Coefficients { extinction: 1.0, albedo: 1.0, diffusion: 0.4, decay, robin: 0.5 }
+        Coefficients {
+            extinction: 1.0,
+            albedo: 1.0,
+            diffusion: 0.4,
+            decay,
+            robin: 0.5,
+            boundary: Boundary::of(1.0),
+        }
     }
 
     /// By many points, each small enough to be one.

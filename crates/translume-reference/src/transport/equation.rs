@@ -72,7 +72,7 @@ impl Equation {
         self.patches[index].bulge
     }
 
-    /// Σ_j A_j [(c_G φ_j − 4 c_G Γ_j) G + φ_j H] at a point, and −Σ_j A_j H⁰ there, within .2 to 1.2.
+    /// Σ_j A_j [c_G (φ_j − 4 η² Γ_j) G + φ_j H] at a point, and −Σ_j A_j H⁰ there, within .2 to 1.2.
     pub fn sums(&self, at: DVec3, fluence: &[[f64; 3]], returning: &[[f64; 3]]) -> ([f64; 3], f64) {
         let (mut sum, mut closure) = ([0.0; 3], 0.0);
         let lit = self.patches.iter().zip(fluence.iter().zip(returning));
@@ -119,7 +119,7 @@ impl Equation {
         }
         for _ in 0..RETURNS {
             let exitance = |(patch, (fluence, returning)): (&Patch, (&[f64; 3], &[f64; 3]))| -> [f64; 3] {
-                std::array::from_fn(|k| self.medium[k].exitance(patch.bulge, fluence[k], returning[k]))
+                std::array::from_fn(|k| self.medium[k].leaving(patch.bulge, fluence[k], returning[k]))
             };
             let lit = self.patches.iter().zip(fluence.iter().zip(&returning));
             let leaving: Vec<[f64; 3]> = lit.map(exitance).collect();

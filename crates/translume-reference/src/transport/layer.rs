@@ -9,7 +9,8 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::Solution;
-use super::coefficients::{Coefficients, hopf_shift};
+use super::coefficients::Coefficients;
+use crate::fresnel::transmittance;
 use std::f64::consts::PI;
 
 /// Depth of the value below the surface, mean free paths.
@@ -23,8 +24,6 @@ const MOST_OF_RAY: f64 = 0.35;
 pub(super) const ALONG: [f64; 2] = [0.6, 1.6];
 /// No further than this share of the ray.
 pub(super) const MOST_ALONG: f64 = 0.5;
-/// Optical depth that Hopf's function makes the surface of.
-const SURFACE: f64 = 0.096;
 /// Points of the integral, at midpoints of equal weight.
 const STEPS: u32 = 24;
 
@@ -72,12 +71,12 @@ impl Parabola {
             reach,
             thickness,
         };
-        own.surface = fluence[0] + own.beam(medium, SURFACE / medium.extinction);
+        own.surface = fluence[0] + own.beam(medium, medium.hopf_surface() / medium.extinction);
         let flux = medium.net_flux(bulge, fluence[0], returning);
         let optical = depth * medium.extinction;
         if optical > 1e-3 {
             own.slope = (flux - medium.albedo * irradiance) / medium.diffusion;
-            let there = (optical + hopf_shift(optical)) / medium.extinction;
+            let there = (optical + medium.hopf_shift(optical)) / medium.extinction;
             let rise = fluence[1] + own.beam(medium, there) - own.surface;
             own.curve = (rise / depth - own.slope) / depth;
         }
@@ -86,16 +85,17 @@ impl Parabola {
 
     /// φ at a depth, less the particular solution of light that enters there.
     fn at(&self, medium: &Coefficients, depth: f64) -> f64 {
-        let shifted = depth - hopf_shift(depth * medium.extinction) / medium.extinction;
+        let shifted = depth - medium.hopf_shift(depth * medium.extinction) / medium.extinction;
         self.surface + shifted * (self.slope + shifted * self.curve)
     }
 
     /// That, less than 0: α' E / D times the mean way from a depth to what scatters deeper, with depths as Hopf's function makes them.
     fn beam(&self, medium: &Coefficients, depth: f64) -> f64 {
         let optical = depth * medium.extinction;
-        let x = optical.max(SURFACE);
-        let way = 1.0 / self.rate + hopf_shift(x) * 3.4 / (self.rate + 3.4);
-        self.beam * ((-self.rate * x).exp() * way + (hopf_shift(optical) - optical).max(0.0))
+        let x = optical.max(medium.hopf_surface());
+        let hopf = medium.hopf_rate();
+        let way = 1.0 / self.rate + medium.hopf_shift(x) * hopf / (self.rate + hopf);
+        self.beam * ((-self.rate * x).exp() * way + (medium.hopf_shift(optical) - optical).max(0.0))
     }
 }
 
@@ -141,6 +141,14 @@ impl Row<'_> {
         };
         medium.albedo / (4.0 * PI) * share * (0..STEPS).map(|k| step(k).max(0.0)).sum::<f64>()
             / f64::from(STEPS)
+            + self.thrown_back(medium) * (-medium.extinction * chord).exp()
+    }
+
+    /// By the surface at the other end, of light that is there as bright in all directions.
+    fn thrown_back(&self, medium: &Coefficients) -> f64 {
+        let Some((other, there)) = self.far.filter(|_| medium.ior() != 1.0) else { return 0.0 };
+        let fluence = (other.at(medium, 0.0) - other.beam(medium, 0.0)).max(0.0);
+        (1.0 - transmittance(1.0 / medium.ior(), there)) * fluence / (4.0 * PI)
     }
 
     /// What the sites along the ray say of a place so far along it: linear in between.

@@ -3,7 +3,7 @@
 //! A dipole knows a half-space. Here diffusion is solved with the boundary that the body has, as an integral equation for the fluence φ at
 //! sites of the surface, in each channel on its own:
 //!
-//! c_i φ_i + Σ_j A_j [(c_G φ_j − 4 c_G Γ_j) G_ij + φ_j H_ij] = φ_Q,i,  G = e^−σr / 4πDr,  H = D ∂G/∂n_j,  c_i = −Σ_j A_j H⁰_ij
+//! c_i φ_i + Σ_j A_j [c_G (φ_j − 4 η² Γ_j) G_ij + φ_j H_ij] = φ_Q,i,  G = e^−σr / 4πDr,  H = D ∂G/∂n_j,  c_i = −Σ_j A_j H⁰_ij
 //!
 //! | module | what it does |
 //! | --- | --- |
@@ -158,7 +158,7 @@ impl<'a> Solution<'a> {
         &self.fluence
     }
 
-    /// Diffuse exitance of a site, W/m²: what crosses the surface outwards, B = c_G φ − (4 c_G − 1) Γ.
+    /// Diffuse exitance of a site, W/m²: what crosses the surface outwards, B = c_G (φ − 4 η² Γ) + T Γ, with T what gets in of diffuse light.
     #[must_use]
     pub fn exitance(&self, site: usize) -> [f64; 3] {
         let (bulge, fluence, returning) =

@@ -12,7 +12,7 @@ use super::twice::twice;
 use super::{Layers, Solution};
 use crate::composite::{Camera, Picture, expose, texels_at, view_cosine};
 use crate::dice::Dice;
-use crate::fresnel::{hemispherical_transmittance, transmittance};
+use crate::fresnel::{hemispherical_transmittance, refracted_cos, transmittance};
 use crate::{Hit, Surface};
 
 /// How light leaves.
@@ -21,7 +21,7 @@ use crate::{Hit, Surface};
 pub enum Tier {
     /// By the diffuse law, L = F_t B / π (1 − F_dr,ext).
     Boundary,
-    /// Gathered along the ray of view from under the surface, and once scattered. Through a surface that refracts as [`Tier::Boundary`].
+    /// Gathered along the ray of view from under the surface, and once scattered. Through a surface to a denser outside as [`Tier::Boundary`].
     Layers,
 }
 
@@ -34,8 +34,8 @@ pub fn picture(
     solution: &Solution<'_>,
     tier: Tier,
 ) -> Picture {
-    let is_matched = solution.rays.ior == 1.0;
-    let layers = (tier == Tier::Layers && is_matched).then(|| solution.layers());
+    let is_known = solution.rays.ior >= 1.0;
+    let layers = (tier == Tier::Layers && is_known).then(|| solution.layers());
     let eye = Eye {
         surface,
         atlas,
@@ -68,10 +68,10 @@ const GRAZING: f64 = 0.02;
 impl Eye<'_> {
     fn radiance(&self, camera: &Camera, hit: &Hit, direction: DVec3, index: usize) -> [f64; 3] {
         let rays = &self.solution.rays;
-        let cosine = view_cosine(self.surface, hit, direction);
+        let outside = view_cosine(self.surface, hit, direction);
         let sites: Vec<(usize, f64)> = texels_at(self.atlas, hit).collect();
         let Some(layers) = &self.layers else {
-            let leaves = transmittance(rays.ior, cosine) / (PI * hemispherical_transmittance(rays.ior));
+            let leaves = transmittance(rays.ior, outside) / (PI * hemispherical_transmittance(rays.ior));
             let mut sum = [0.0; 3];
             for (site, weight) in sites {
                 crate::rgb::accumulate(&mut sum, self.solution.exitance(site), weight * leaves);
@@ -79,17 +79,24 @@ impl Eye<'_> {
             return sum;
         };
         let mut dice = Dice::stream(3, index as u64);
-        let ray = (DVec3::from(camera.eye), direction);
-        let segments = rays.segments(ray.0, ray.1, f64::INFINITY);
+        let normal = DVec3::from(self.surface.normal(hit.triangle, hit.barycentric));
+        let seen_at = DVec3::from(self.surface.point(hit.triangle, hit.barycentric));
+        let direction = -rays.bent(-direction, normal);
+        let place = seen_at + direction * (10.0 * rays.offset);
+        let eye = if rays.ior == 1.0 { camera.eye.into() } else { place };
+        let ray = (eye, direction);
+        let mut segments = rays.segments(ray.0, ray.1, f64::INFINITY);
+        if rays.ior != 1.0 {
+            // Where light goes that comes in again is another matter.
+            segments.truncate(1);
+        }
         let chord = segments.first().map_or(0.0, |[from, to]| to - from);
-        let place =
-            DVec3::from(self.surface.point(hit.triangle, hit.barycentric)) + direction * (10.0 * rays.offset);
+        let cosine = refracted_cos(rays.ior, outside.max(0.0));
         let far = self.surface.closest_hit(place.to_array(), direction.to_array()).and_then(|far| {
             let normal = DVec3::from(self.surface.normal(far.triangle, far.barycentric));
             let (site, _) = texels_at(self.atlas, &far).max_by(|a, b| a.1.total_cmp(&b.1))?;
             Some((site, normal.dot(direction).max(GRAZING)))
         });
-        let normal = DVec3::from(self.surface.normal(hit.triangle, hit.barycentric));
         let mean = self.solution.medium.iter().map(|channel| channel.extinction).sum::<f64>() / 3.0;
         let along = ALONG.map(|ways| {
             let s = ways / mean;
@@ -101,11 +108,18 @@ impl Eye<'_> {
             });
             (s, site)
         });
+        let bulge =
+            sites.iter().map(|(site, weight)| weight * self.solution.equation.bulge(*site)).sum::<f64>();
         let seen = Seen { sites, cosine: cosine.max(GRAZING), chord, along, far };
         let many = layers.radiance(&seen);
         let once = single(&self.solution.medium, rays, &self.lamps, (ray, &segments), &mut dice);
         // Parts of the ray behind the first are out of the layers' sight.
         let twice = twice(self.solution, (place, direction), seen.cosine, chord);
-        std::array::from_fn(|k| many[k] + once[k] + self.shortfall[k] * twice[k])
+        let leaves = transmittance(rays.ior, outside) / (rays.ior * rays.ior);
+        std::array::from_fn(|k| {
+            let medium = &self.solution.medium[k];
+            let lacking = self.shortfall[k] * medium.lean(seen.cosine) * medium.along(bulge);
+            leaves * (many[k] + once[k] + lacking * twice[k])
+        })
     }
 }

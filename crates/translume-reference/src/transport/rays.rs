@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use super::Site;
+use crate::fresnel::refracted_cos;
 use crate::lights::strata::{Strata, hemisphere};
 use crate::path::way::segments;
 use crate::path::{Crossing, Shape};
@@ -43,6 +44,15 @@ impl<'a> Rays<'a> {
     /// How much of a ray is inside, mm.
     pub fn inside(&self, origin: DVec3, direction: DVec3, most: f64) -> f64 {
         self.segments(origin, direction, most).iter().map(|[from, to]| to - from).sum()
+    }
+
+    /// A direction outside, away from a surface with this normal, as it is inside.
+    pub fn bent(&self, outwards: DVec3, normal: DVec3) -> DVec3 {
+        let cosine = normal.dot(outwards).max(0.0);
+        if self.ior == 1.0 {
+            return outwards;
+        }
+        (outwards - cosine * normal) / self.ior + refracted_cos(self.ior, cosine) * normal
     }
 
     /// From a site along a direction that leads inwards to the other side, mm; 0 where there is none.

@@ -6,7 +6,9 @@ use super::coefficients::Coefficients;
 use super::rays::Rays;
 use super::source::Lamps;
 use crate::dice::Dice;
+use crate::fresnel::{refracted_cos, transmittance};
 use crate::lights::strata::cone;
+use crate::path::Crossing;
 use crate::path::lamp::{Aim, Lamp};
 use crate::path::way::is_lit;
 use crate::rgb::scale;
@@ -19,7 +21,7 @@ const DIRECTIONS: u32 = 8;
 /// What a ray has left behind dimmer than this is not worth marching.
 const DIM: f64 = 1e-4;
 
-/// Radiance in each channel along a ray through an index-matched body, W/(m² sr); `segments` are its inside parts.
+/// Radiance in each channel along a ray, W/(m² sr); `segments` are its inside parts.
 pub(super) fn single(
     medium: &[Coefficients; 3],
     rays: &Rays<'_>,
@@ -62,6 +64,10 @@ fn arriving(
     let mut sum = 0.0;
     for _ in 0..count {
         let Some(aim) = towards(lamp, at, dice) else { continue };
+        if rays.ior != 1.0 {
+            sum += refracted(lamp, rays, medium, (at, channel), &aim);
+            continue;
+        }
         let segments = rays.segments(at, aim.direction, aim.distance);
         let Some([_, last]) = segments.last() else { continue };
         if is_lit(lamp.region(), at + aim.direction * *last) {
@@ -72,6 +78,40 @@ fn arriving(
     sum / f64::from(count)
 }
 
+/// Steps towards the place where light enters that is bent towards another.
+const BENDS: u32 = 8;
+
+/// From a place inside, the direction in which light comes that comes from another outside, and where it enters.
+fn bent_way(rays: &Rays<'_>, at: DVec3, outwards: DVec3) -> Option<(DVec3, Crossing)> {
+    let leaves = |direction: DVec3| rays.shape.first(at, direction, true, f64::INFINITY);
+    let mut ray = outwards;
+    for _ in 0..BENDS {
+        ray = rays.bent(outwards, leaves(ray)?.normal.normalize());
+    }
+    Some((ray, leaves(ray)?))
+}
+
+/// What of a lamp that is seen from a place outside in this direction gets there through a surface that refracts. Curved surfaces gather no light.
+fn refracted(
+    lamp: &Lamp,
+    rays: &Rays<'_>,
+    medium: &Coefficients,
+    (at, channel): (DVec3, usize),
+    aim: &Aim,
+) -> f64 {
+    let Some((ray, entry)) = bent_way(rays, at, aim.direction) else { return 0.0 };
+    let (normal, place) = (entry.normal.normalize(), at + ray * entry.t);
+    let outside = normal.dot(aim.direction);
+    let is_dark = outside <= 0.0
+        || !is_lit(lamp.region(), place)
+        || rays.shape.first(place + normal * rays.offset, aim.direction, false, aim.distance).is_some();
+    if is_dark {
+        return 0.0;
+    }
+    let squeezed = outside / refracted_cos(rays.ior, outside);
+    aim.light[channel] * squeezed * transmittance(rays.ior, outside) * (-medium.extinction * entry.t).exp()
+}
+
 /// A direction of a light that is most of the sky is any.
 fn towards(lamp: &Lamp, at: DVec3, dice: &mut Dice) -> Option<Aim> {
     if lamp.is_aimed_at() {
@@ -80,4 +120,24 @@ fn towards(lamp: &Lamp, at: DVec3, dice: &mut Dice) -> Option<Aim> {
     let (direction, _) = cone(DVec3::Y, 2.0, dice.pair());
     let sight = lamp.sight(at, direction)?;
     Some(Aim { direction, distance: sight.distance, light: scale(sight.radiance, 4.0 * PI), density: 0.0 })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::path::Ball;
+
+    #[test]
+    fn light_is_bent_where_it_enters() {
+        let ball = Ball { center: [0.0; 3], radius: 2.0 };
+        let rays = Rays::new(&ball, 1.4);
+        for at in [DVec3::new(0.0, 0.3, 0.5), DVec3::new(0.9, 0.0, 1.0), DVec3::new(0.2, -1.2, -0.4)] {
+            let (ray, entry) = bent_way(&rays, at, DVec3::Z).unwrap();
+            let normal = (at + ray * entry.t).normalize();
+            // Snell's law, in the plane of incidence.
+            let (outside, inside) = (normal.cross(DVec3::Z), normal.cross(ray));
+            assert!((outside - 1.4 * inside).length() < 1e-3, "{at}: {outside} {inside}");
+            assert!((outside - inside).length() > 0.02, "{at}: not bent");
+        }
+    }
 }

@@ -6,7 +6,7 @@
 use glam::DVec3;
 
 use super::Site;
-use super::coefficients::{Coefficients, hopf_depth};
+use super::coefficients::Coefficients;
 use super::disc::Disc;
 use super::layer::Depth;
 use super::rays::{Rays, SKY};
@@ -147,7 +147,7 @@ impl Source {
                     let power = channel.albedo * entered * own.share * site.area * SHARES[s];
                     widths[s][k] += power * beam.cosine * own.deviation(s) / channel.extinction;
                     let fold = beam.cosine / channel.extinction;
-                    let sheet = hopf_depth(beam.cosine * depth) / channel.extinction;
+                    let sheet = channel.hopf_depth(beam.cosine * depth) / channel.extinction;
                     source.spread[k] += power * own.away(s, fold, sheet, z);
                     let (total, place, bent, bends) = &mut stratum[k];
                     *total += power;
@@ -176,7 +176,8 @@ impl Source {
                     let depth = (deep - lift).max(0.0);
                     let bent = (bends / power * sideways).clamp(0.0, depth);
                     let extinction = medium[k].extinction;
-                    let shift = (depth - bent) - hopf_depth((depth - bent) * extinction) / extinction;
+                    let shift =
+                        (depth - bent) - medium[k].hopf_depth((depth - bent) * extinction) / extinction;
                     let sheet = depth - shift;
                     source.scatters[stratum][k] += mean + normal * lift;
                     source.place[stratum][k] += mean + normal * (lift + shift);

@@ -191,7 +191,7 @@ impl Body {
             memory.write(queue, layout, demand.theta);
         }
         let eye = frame.view.as_ref().map(|view| view.camera.in_mm(self.mm_per_unit).1);
-        let gathers = solver.runs == Transport::BoundaryLayers && self.medium.ior == 1.0;
+        let gathers = solver.runs == Transport::BoundaryLayers && self.medium.ior >= 1.0;
         let seen = gathers && eye.is_some();
         let elsewhere = eye.is_some_and(|eye| seen && memory.look(queue, eye));
         let looked = elsewhere || seen != solver.steps.seen;

@@ -17,10 +17,13 @@ use std::sync::Arc;
 const MOST_GROUPS: u32 = 256;
 /// Texels that are worth a workgroup of them.
 const TEXELS_PER_GROUP: u32 = 512;
-/// As in `krylov.wgsl`.
-/// Directions, and the solution.
-const DIRECTIONS: u64 = 5;
-const PRODUCTS: u64 = 16;
+/// Directions, as in `krylov.wgsl`.
+const DIRECTIONS: u64 = StateLayout::DIRECTIONS as u64;
+/// Of pairs of them, of each with a target, and two more.
+const PRODUCTS: u64 = DIRECTIONS * (DIRECTIONS + 1) / 2 + DIRECTIONS + 2;
+/// `Angle::Wide` over `Angle::Narrow`, and no wider than this: beyond, expansions say little.
+const WIDER: f32 = 1.5;
+const WIDEST: f32 = 0.9;
 
 pub(crate) struct TransportMemory {
     pub sites: Sites,
@@ -70,7 +73,7 @@ impl TransportMemory {
         let plan = Plan::new(tree, demand, &device.limits());
         let uniform = gpu::uniform_buffer(device, "transport", size_of::<TransportLayout>() as u64);
         let levels =
-            gpu::uniform_buffer(device, "potential", UNIFORM_STRIDE * u64::from(plan.start_level + 1));
+            gpu::uniform_buffer(device, "potential", 2 * UNIFORM_STRIDE * u64::from(plan.start_level + 1));
         let sizes = Sizes::new(&sites);
         let storage = |label, bytes: u64| gpu::buffer(device, label, bytes);
         let site_levels =
@@ -306,7 +309,9 @@ impl TransportMemory {
             sources: layout.sources,
             terms: [TermLayout::default(); 2],
         };
-        queue.write_buffer(&self.levels, 0, &self.plan.uniforms(&scatter, &self.sites.tree, theta));
+        let wide = (WIDER * theta).min(WIDEST.max(theta));
+        let levels = [theta, wide].map(|theta| self.plan.uniforms(&scatter, &self.sites.tree, theta));
+        queue.write_buffer(&self.levels, 0, &levels.concat());
     }
 
     /// Whether that is another eye.
@@ -355,7 +360,7 @@ impl Sizes {
             charges: of(size_of::<ChargeLayout>(), 2 * sources),
             strata: of(size_of::<StrataLayout>(), sources),
             leaving: 16 * (sources + sites),
-            directions: 48 * DIRECTIONS * sites,
+            directions: 48 * (DIRECTIONS + 1) * sites,
             partial: 16 * PRODUCTS * u64::from(TransportMemory::groups(tree)),
             parabolas: of(size_of::<ParabolaLayout>(), sites),
             lights: of(size_of::<SiteLightLayout>(), sites),

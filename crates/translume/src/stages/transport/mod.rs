@@ -31,7 +31,7 @@ use wgpu::ComputePipeline;
 const COLD: u32 = 8;
 const WARM: u32 = 1;
 
-/// How often light that leaves a concave body is followed back into it.
+/// How often light that leaves a concave body is followed back into it for a direction of the first frame.
 const RETURNS: u32 = 2;
 
 pub(crate) struct TransportStage {
@@ -48,7 +48,6 @@ pub(crate) struct TransportStage {
     surface: [ComputePipeline; 2],
     lit_below: [ComputePipeline; 2],
     sent_below: [ComputePipeline; 2],
-    forget: ComputePipeline,
     leave: ComputePipeline,
     merge_leaving: ComputePipeline,
     come_in: ComputePipeline,
@@ -122,7 +121,7 @@ impl TransportStage {
                 "returning",
                 &[UNIFORM_ARRAY, UNIFORM, READ, READ, READ, READ, WRITE, WRITE, READ, READ],
             ),
-            krylov: layout("krylov", &[UNIFORM, READ, READ, READ, WRITE, WRITE, WRITE, WRITE, READ]),
+            krylov: layout("krylov", &[UNIFORM, READ, READ, READ, WRITE, WRITE, WRITE, WRITE, WRITE]),
             layer: layout("layer", &[UNIFORM, READ, READ, READ, READ, READ, WRITE, WRITE]),
             picture: layout("picture", &[UNIFORM, UNIFORM, READ, READ, READ, READ, WRITE, READ, READ, READ]),
             near: layout("near", &[UNIFORM, READ, READ, READ, WRITE]),
@@ -156,7 +155,6 @@ impl TransportStage {
             surface: sum(false, false),
             lit_below: sum(true, true),
             sent_below: sum(false, true),
-            forget: pipeline(&layouts.returning, &returning, "forget"),
             leave: pipeline(&layouts.returning, &returning, "leave"),
             merge_leaving: pipeline(&layouts.returning, &returning, "merge"),
             come_in: pipeline(&layouts.returning, &returning, "come_in"),
@@ -201,16 +199,19 @@ impl TransportStage {
             frame.each(pass, &self.enter, &memory.source);
             frame.each_of(pass, &self.light_of_sites, &memory.merge);
             frame.up(pass, &memory.merge, |_| &self.merge_light);
-            frame.sum(pass, &self.light, &memory.given);
+            frame.sum(pass, &self.light, &memory.given, Angle::Narrow);
             let krylov = &self.krylov;
             frame.groups(pass, &krylov.measure);
             frame.one(pass, &krylov.settle_mean);
             frame.each(pass, &krylov.start, &memory.krylov);
-            frame.apply(pass);
+            frame.apply(pass, 1, Angle::Narrow);
             frame.each(pass, &krylov.adopt, &memory.krylov);
             frame.minimise(pass);
+            // A direction may be roughly what it is, if the next frame finds out what the equation makes of the solution.
+            let (returns, angle) =
+                if steps.tries > WARM { (RETURNS, Angle::Narrow) } else { (1, Angle::Wide) };
             for _ in 0..steps.tries {
-                frame.apply(pass);
+                frame.apply(pass, returns, angle);
                 frame.each(pass, &krylov.take, &memory.krylov);
                 frame.groups(pass, &krylov.project_direction);
                 frame.one(pass, &krylov.weigh_direction);
@@ -220,8 +221,8 @@ impl TransportStage {
             }
             if steps.seen {
                 frame.send(pass, &self.charge_found);
-                frame.sum(pass, &self.lit_below, &memory.lit_below);
-                frame.sum(pass, &self.sent_below, &memory.sent_below);
+                frame.sum(pass, &self.lit_below, &memory.lit_below, Angle::Narrow);
+                frame.sum(pass, &self.sent_below, &memory.sent_below, Angle::Narrow);
                 frame.each(pass, &self.parabola, &memory.layer);
             }
         }
@@ -235,6 +236,13 @@ impl TransportStage {
             frame.each_texel(pass, &self.strangers, &memory.strangers);
         }
     }
+}
+
+/// How large clusters of a sum may look: as the tolerance has it, or more so.
+#[derive(Clone, Copy)]
+enum Angle {
+    Narrow,
+    Wide,
 }
 
 struct Recorder<'a> {
@@ -284,17 +292,16 @@ impl<'a> Recorder<'a> {
         pass.dispatch_workgroups(1, 1);
     }
 
-    /// What the equation makes of the trial.
-    fn apply(&self, pass: &mut Pass<'_>) {
+    /// What the equation makes of the trial, with light that leaves a concave body followed back into it so often.
+    fn apply(&self, pass: &mut Pass<'_>, returns: u32, angle: Angle) {
         let (stage, group) = (self.stage, &self.memory.returning);
-        self.each_of(pass, &stage.forget, group);
-        for _ in 0..RETURNS {
+        for _ in 0..returns {
             self.each_of(pass, &stage.leave, group);
             self.up(pass, group, |_| &stage.merge_leaving);
             self.each_of(pass, &stage.come_in, group);
         }
         self.send(pass, &stage.charge);
-        self.sum(pass, &stage.surface, &self.memory.sent);
+        self.sum(pass, &stage.surface, &self.memory.sent, angle);
     }
 
     /// What the surface sends.
@@ -320,13 +327,24 @@ impl<'a> Recorder<'a> {
     }
 
     /// One traversal.
-    fn sum(&self, pass: &mut Pass<'_>, [inner, leaf]: &[ComputePipeline; 2], group: &wgpu::BindGroup) {
+    fn sum(
+        &self,
+        pass: &mut Pass<'_>,
+        [inner, leaf]: &[ComputePipeline; 2],
+        group: &wgpu::BindGroup,
+        angle: Angle,
+    ) {
         pass.set_pipeline(&self.stage.begin);
         pass.set_bind_group(group, &[0]);
         pass.dispatch_workgroups(1, 1);
-        for level in (0..=self.memory.plan.start_level).rev() {
+        let levels = self.memory.plan.start_level + 1;
+        for level in (0..levels).rev() {
             pass.set_pipeline(if level > 0 { inner } else { leaf });
-            pass.set_bind_group(group, &[level * UNIFORM_STRIDE as u32]);
+            let uniform = match angle {
+                Angle::Narrow => level,
+                Angle::Wide => levels + level,
+            };
+            pass.set_bind_group(group, &[uniform * UNIFORM_STRIDE as u32]);
             pass.dispatch(self.tree.counts[level as usize]);
         }
     }
