@@ -29,7 +29,7 @@ use wgpu::ComputePipeline;
 
 /// Tries of the first frame, and of every later one.
 const COLD: u32 = 8;
-const WARM: u32 = 1;
+const WARM: u32 = 2;
 
 /// How often light that leaves a concave body is followed back into it for a direction of the first frame.
 const RETURNS: u32 = 2;
