@@ -13,7 +13,7 @@ use glam::Mat4;
 use std::sync::Arc;
 
 /// Frames after the last change that still solve, by two tries each: of twelve tries .05 % of the creature is left after a morph, of six up to .6 %.
-const SETTLING: u32 = 6;
+const SETTLING: u32 = 5;
 
 /// A tolerance is one of the mean, and a body lit from behind is a hundred times darker than that where it is seen: at the opening angle that serves
 /// exitance squares of the tree show on the bunny, at .77 of it in places, at .6 nowhere.
