@@ -17,6 +17,12 @@ struct Beam {
     high: vec3f,
 }
 
+// A direction outside, away from a surface with this normal, as it is inside.
+fn bent(outwards: vec3f, normal: vec3f) -> vec3f {
+    let cosine = dot(normal, outwards);
+    return (outwards - cosine * normal) / transport.eta + refracted_cosine(transport.eta, cosine) * normal;
+}
+
 fn beam_count() -> u32 {
     return lighting.light_count + lighting.ambient_count;
 }

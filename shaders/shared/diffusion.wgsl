@@ -105,6 +105,17 @@ fn robin(bulge: f32) -> vec3f {
     return plane + clamp(transport.bend * transport.diffusion.rgb * bulge, -0.5 * plane, 0.5 * plane);
 }
 
+// Cosine inside from which on light gets in and out.
+fn critical_cosine() -> f32 {
+    return sqrt(max(1.0 - 1.0 / (transport.eta * transport.eta), 0.0));
+}
+
+// Mean cosine inside of an even sky.
+fn mean_sky_cosine() -> f32 {
+    let critical = critical_cosine();
+    return min(2.0 / 3.0 * (1.0 - critical * critical * critical) * transport.eta * transport.eta, 1.0);
+}
+
 // What crosses a surface outwards, less what comes in, Γ. Light that is the same everywhere is η² times as bright inside.
 fn net_flux(robin: vec3f, fluence: vec3f, comes_in: vec3f) -> vec3f {
     return robin * (fluence - 4.0 * transport.eta * transport.eta * comes_in);

@@ -33,9 +33,7 @@ fn deep_at(depth: vec3f) -> Deep {
     let shift = hopf_shift(optical);
     if transport.eta > 1.0 {
         // Within the critical angle all is nearly as deep.
-        let critical = sqrt(1.0 - 1.0 / (transport.eta * transport.eta));
-        let mean = 2.0 / 3.0 * (1.0 - critical * critical * critical) * transport.eta * transport.eta;
-        return Deep(optical, shift, mean_way(x, min(shift, vec3f(transport.hopf.z)), 1.0 / mean));
+        return Deep(optical, shift, mean_way(x, min(shift, vec3f(transport.hopf.z)), 1.0 / mean_sky_cosine()));
     }
     // 2 E₂(x) by two exponentials.
     let sky = 0.3 * mean_way(x, min(shift, vec3f(transport.hopf.z)), 0.9) + 0.7 * mean_way(x, min(shift, vec3f(transport.hopf.z)), 2.1);

@@ -5,11 +5,6 @@ const SKY_POINTS: u32 = 3u;
 const SKY_COSINES: array<f32, 3> = array<f32, 3>(0.012702, 0.25, 0.787298);
 const SKY_WEIGHTS: array<f32, 3> = array<f32, 3>(0.062612, 0.444444, 0.492943);
 
-// Cosine inside from which on light gets in and out.
-fn critical_cosine() -> f32 {
-    return sqrt(max(1.0 - 1.0 / (transport.eta * transport.eta), 0.0));
-}
-
 // Cosines inside of an even sky, and of ∫ f(μ) dμ over them weights for light that brings in one unit of irradiance.
 fn sky_cosine(point: u32) -> f32 {
     return mix(critical_cosine(), 1.0, SKY_COSINES[point]);

@@ -72,8 +72,8 @@ fn gathered(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups
     }
     // What diffusion lacks of light that scattered again comes last.
     let most = many(sight) + thrown_back(sight) + once(sight, place.xyz, direction, normal, width);
-    let bent = clamp(sight.own.bulge / transport.extinction.rgb, vec3f(0.0), vec3f(MOST_BENT));
-    let lacking = transport.shortfall.rgb * pow(cosine, -transport.lean) * (1.0 + transport.along * bent);
+    let bend = clamp(sight.own.bulge / transport.extinction.rgb, vec3f(0.0), vec3f(MOST_BENT));
+    let lacking = transport.shortfall.rgb * pow(cosine, -transport.lean) * (1.0 + transport.along * bend);
     let radiance = most + lacking * twice(place.xyz, direction, cosine, chord);
     // Outside light is η² times less bright; what leaves under other angles is a matter of the material.
     let leaves = PI * transport.open / (transport.eta * transport.eta);
@@ -244,9 +244,8 @@ struct Arriving {
 fn arriving_at(index: u32, position: vec3f, facet: vec3f, width: f32) -> Arriving {
     let comes = beam(index, position, width * width, vec3f(0.0, 1.0, 0.0));
     if all(comes.strength <= vec3f(0.0)) { return Arriving(vec3f(0.0), 0.0, false, facet); }
-    let aslant = dot(facet, comes.to_light);
-    let bent = (comes.to_light - aslant * facet) / transport.eta + refracted_cosine(transport.eta, aslant) * facet;
-    let to_surface = select(bent, comes.to_light, transport.eta == 1.0 || aslant <= 0.0);
+    let is_straight = transport.eta == 1.0 || dot(facet, comes.to_light) <= 0.0;
+    let to_surface = select(bent(comes.to_light, facet), comes.to_light, is_straight);
     let entry = crossing(position, to_surface, 0.0, comes.far, 1.0, false);
     if entry.site == NO_SITE { return Arriving(vec3f(0.0), 0.0, false, facet); }
     let normal = normalize(site_normals[entry.site].xyz);

@@ -44,7 +44,6 @@ fn enter(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: v
         if any(position < arriving.low) || any(position > arriving.high) { continue; }
         let light = arriving.strength * outside * fresnel_transmittance(transport.eta, outside);
         let inside = refracted_cosine(transport.eta, outside);
-        let inwards = (outside * normal - arriving.to_light) / transport.eta - normal * inside;
         unshadowed += light;
         // Depth maps say who is lit, where there is no sky to be told from.
         var crossed = 0.0;
@@ -58,14 +57,14 @@ fn enter(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: v
         direct += straight;
         through += rest;
         let weight = luminance(straight + rest);
-        direction += weight * inwards;
+        direction -= weight * bent(arriving.to_light, normal);
         cosines += weight * inside;
     }
     // An even sky, through a cone inside.
     let weight = luminance(diffuse);
-    let cone = 2.0 / 3.0 * (1.0 - pow(max(1.0 - 1.0 / (transport.eta * transport.eta), 0.0), 1.5)) * transport.eta * transport.eta;
-    direction -= weight * min(cone, 1.0) * normal;
-    cosines += weight * min(cone, 1.0);
+    let cone = mean_sky_cosine();
+    direction -= weight * cone * normal;
+    cosines += weight * cone;
     let light = (direct + through + diffuse) * tint;
     let whole = luminance(direct + through) + weight;
     if whole > 0.0 {

@@ -138,7 +138,7 @@ pub(super) struct Boundary {
     /// And over mean free paths by R how much more diffusion lacks, so that white balls of 7 to 40 mean free paths under a white sky are.
     along: f64,
     /// What diffusion lacks, over what scattered twice, grows towards flat views by this power of the cosine inside: so that a half-space without absorption
-    /// under an even sky is as bright in all directions, within .4 %.
+    /// under an even sky is as bright in all directions, within .5 % of the mean.
     lean: f64,
     /// η.
     ior: f64,

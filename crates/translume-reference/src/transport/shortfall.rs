@@ -233,7 +233,7 @@ mod tests {
     fn under_a_white_sky_a_white_half_space_is_as_bright_from_all_sides() {
         for ior in [1.0, 1.1, 1.3, 1.5, 1.7] {
             let found = under_a_sky(ior, true);
-            // Measured: .7 %.
+            // Measured: .9 %.
             assert!(found.iter().all(|found| (found - 1.0).abs() < 0.01), "{ior}: {found:?}");
         }
         let found = under_a_sky(1.3, false);

@@ -79,7 +79,7 @@ fn arriving(
 }
 
 /// Steps towards the place where light enters that is bent towards another.
-const BENDS: u32 = 8;
+const BENDS: u32 = 16;
 
 /// From a place inside, the direction in which light comes that comes from another outside, and where it enters.
 fn bent_way(rays: &Rays<'_>, at: DVec3, outwards: DVec3) -> Option<(DVec3, Crossing)> {

@@ -113,7 +113,7 @@ fn beam(rays: &Rays<'_>, site: &Site, aim: &Aim) -> Option<Beam> {
     let outside = Some(normal.dot(aim.direction)).filter(|cos| *cos > 0.0)?;
     let origin = DVec3::from(site.position) + normal * rays.offset;
     let cosine = refracted_cos(rays.ior, outside);
-    let direction = (outside * normal - aim.direction) / rays.ior - normal * cosine;
+    let direction = -rays.bent(aim.direction, normal);
     let crossed = if rays.ior == 1.0 {
         rays.inside(origin, aim.direction, aim.distance)
     } else if rays.shape.first(origin, aim.direction, false, aim.distance).is_some() {

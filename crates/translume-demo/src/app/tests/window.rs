@@ -17,7 +17,7 @@ use std::time::{Duration, Instant};
 use translume_mesh::{Mesh, builtin};
 
 /// What is waited for at most: a machine that builds beside the tests is slow.
-const PATIENCE: Duration = Duration::from_secs(240);
+pub(super) const PATIENCE: Duration = Duration::from_secs(240);
 /// Between looks at what the other threads have done.
 const NAP: Duration = Duration::from_millis(2);
 
