@@ -36,7 +36,8 @@ struct Transport {
     along: f32,
     // Power of the cosine inside by which what diffusion lacks is less than its share of what scattered twice.
     lean: f32,
-    padding0: f32,
+    // Mean cosine of the phase function.
+    anisotropy: f32,
     // Millimetres.
     eye: vec3f,
     // Where light begins among the bounds of sources.
@@ -45,6 +46,8 @@ struct Transport {
     offsets: array<vec4u, 4>,
     // Where each level begins among the sources.
     sources: array<vec4u, 4>,
+    // How much more of a beam turns than if it scattered evenly: by depth, and four to an entry by the angle.
+    spread: array<vec4f, 64>,
 }
 
 // What a source sends, channel by channel: power about its middle, and its first moment with what else sends as a dipole does.
@@ -114,6 +117,15 @@ fn critical_cosine() -> f32 {
 fn mean_sky_cosine() -> f32 {
     let critical = critical_cosine();
     return min(2.0 / 3.0 * (1.0 - critical * critical * critical) * transport.eta * transport.eta, 1.0);
+}
+
+// How much more a beam that enters at this cosine inside leaves to diffusion than if it scattered evenly, and how much more leaves so of what entered here.
+// What goes nearly straight on and out again does not, and what does not turn back does: under a half-space the two are what this balances. They are alike at
+// 60°, whatever g is. A fit.
+fn balanced(cosine: f32) -> f32 {
+    let g = transport.anisotropy;
+    let steep = (cosine - 0.5) / (cosine + 0.12 * (1.0 - abs(g)));
+    return max(1.0 + 0.381 * g / (0.985 + abs(g)) * steep, 0.0);
 }
 
 // What crosses a surface outwards, less what comes in, Γ. Light that is the same everywhere is η² times as bright inside.

@@ -71,10 +71,13 @@ fn gathered(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups
         sight.there = max(dot(normalize(site_normals[far.site].xyz), direction), GRAZING);
     }
     // What diffusion lacks of light that scattered again comes last.
-    let most = many(sight) + thrown_back(sight) + once(sight, place.xyz, direction, normal, width);
+    let again = many(sight);
+    let most = thrown_back(sight) + once(sight, place.xyz, direction, normal, width);
     let bend = clamp(sight.own.bulge / transport.extinction.rgb, vec3f(0.0), vec3f(MOST_BENT));
     let lacking = transport.shortfall.rgb * pow(cosine, -transport.lean) * (1.0 + transport.along * bend);
-    let radiance = most + lacking * twice(place.xyz, direction, cosine, chord);
+    // Light of lamps that entered close by; what comes from afar leaves as it does where all scatters evenly.
+    let close = clamp(sight.own.light * (1.0 - sight.own.around) / max(PI * again, vec3f(1e-30)), vec3f(0.0), vec3f(1.0));
+    let radiance = most + mix(vec3f(1.0), vec3f(balanced(cosine)), close) * (again + lacking * twice(place.xyz, direction, cosine, chord));
     // Outside light is η² times less bright; what leaves under other angles is a matter of the material.
     let leaves = PI * transport.open / (transport.eta * transport.eta);
     site_exitance[index] = vec4f(max(leaves * radiance, vec3f(0.0)), 0.0);
@@ -208,6 +211,7 @@ fn once(sight: Sight, position: vec3f, direction: vec3f, normal: vec3f, width: f
             var found = arriving_at(k, position + direction * at, facet, width);
             facet = found.facet;
             if place == 0u && found.is_here { found.way = 0.0; }
+            found.light *= brighter(extinction * (s + found.way) + found.before, dot(found.to_light, direction), vec2f(max(dot(found.to_light, facet), GRAZING), sight.cosine));
             if place > 0u {
                 let begins = extinction * optical;
                 let passes = extinction * (s + found.way - optical);
@@ -238,26 +242,73 @@ struct Arriving {
     is_here: bool,
     // Normal where it enters.
     facet: vec3f,
+    // Inside.
+    to_light: vec3f,
+    // Mean free paths through what of the body is in its way.
+    before: vec3f,
+}
+
+fn nothing_arriving(way: f32, facet: vec3f, to_light: vec3f) -> Arriving {
+    return Arriving(vec3f(0.0), way, false, facet, to_light, vec3f(0.0));
 }
 
 // Of a light at a place inside, as if nothing were used up on the way.
 fn arriving_at(index: u32, position: vec3f, facet: vec3f, width: f32) -> Arriving {
     let comes = beam(index, position, width * width, vec3f(0.0, 1.0, 0.0));
-    if all(comes.strength <= vec3f(0.0)) { return Arriving(vec3f(0.0), 0.0, false, facet); }
+    if all(comes.strength <= vec3f(0.0)) { return nothing_arriving(0.0, facet, facet); }
     let is_straight = transport.eta == 1.0 || dot(facet, comes.to_light) <= 0.0;
     let to_surface = select(bent(comes.to_light, facet), comes.to_light, is_straight);
     let entry = crossing(position, to_surface, 0.0, comes.far, 1.0, false);
-    if entry.site == NO_SITE { return Arriving(vec3f(0.0), 0.0, false, facet); }
+    if entry.site == NO_SITE { return nothing_arriving(0.0, facet, to_surface); }
     let normal = normalize(site_normals[entry.site].xyz);
     let outside = dot(normal, comes.to_light);
     var enters = 1.0;
     if transport.eta != 1.0 {
-        if outside <= 0.0 { return Arriving(vec3f(0.0), entry.t, false, facet); }
+        if outside <= 0.0 { return nothing_arriving(entry.t, facet, to_surface); }
         enters = outside * fresnel_transmittance(transport.eta, outside) / max(refracted_cosine(transport.eta, outside), GRAZING);
     }
     let at = site_positions[entry.site].xyz;
     let is_dark = any(at < comes.low) || any(at > comes.high);
-    return Arriving(select(enters * comes.strength * parabolas[entry.site].open, vec3f(0.0), is_dark), entry.t, entry.t < width, normal);
+    let open = parabolas[entry.site].open;
+    let before = -log(max(open, vec3f(1e-8)));
+    return Arriving(select(enters * comes.strength * open, vec3f(0.0), is_dark), entry.t, entry.t < width, normal, to_surface, before);
+}
+
+// What light that turns once is over what it were if it scattered evenly: after so many mean free paths, by an angle of this cosine. Where it runs along the
+// surface, coming in and going out at such cosines, some of it spreads out of the body.
+fn brighter(optical: vec3f, cosine: f32, cosines: vec2f) -> vec3f {
+    if transport.anisotropy == 0.0 { return vec3f(1.0); }
+    let across = spread_step(0.5 - 0.5 * cosine);
+    let depths = transport.albedo.rgb * optical / SPREAD_DEEPEST;
+    var more: vec3f;
+    for (var channel = 0u; channel < 3u; channel++) {
+        let down = spread_step(depths[channel]);
+        let row = u32(down);
+        more[channel] = mix(spread_between(row, across), spread_between(row + 1u, across), down - f32(row));
+    }
+    let width = max(SPREAD_WIDTH * transport.albedo.rgb * optical, vec3f(1e-4));
+    let stays = (1.0 - exp(-cosines.x / width)) * (1.0 - exp(-cosines.y / width));
+    return 1.0 + select(more, more * stays, more > vec3f(0.0));
+}
+
+// The table of what spreads: its steps, and the depth of the last row in scattering lengths.
+const SPREAD_STEPS: u32 = 16u;
+// A beam is as wide as this share of its way, seen from where it runs along the surface.
+const SPREAD_WIDTH: f32 = 0.15;
+const SPREAD_DEEPEST: f32 = 6.0;
+
+// Where a share of its range is in steps; there is one beyond.
+fn spread_step(share: f32) -> f32 {
+    return min(pow(clamp(share, 0.0, 1.0), 1.0 / 3.0), 0.99999) * f32(SPREAD_STEPS - 1u);
+}
+
+fn spread_between(row: u32, across: f32) -> f32 {
+    let column = u32(across);
+    return mix(spread_at(row, column), spread_at(row, column + 1u), across - f32(column));
+}
+
+fn spread_at(row: u32, column: u32) -> f32 {
+    return transport.spread[row * SPREAD_STEPS / 4u + column / 4u][column % 4u];
 }
 
 // Of an even sky, used up along a ray of view: what comes in by this side and by the other.

@@ -33,6 +33,7 @@ fn enter(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: v
     var diffuse = site_lights[index].irradiance.rgb;
     var direct = vec3f(0.0);
     var through = vec3f(0.0);
+    var scatters = vec3f(0.0);
     var unshadowed = vec3f(0.0);
     var direction = vec3f(0.0);
     var cosines = 0.0;
@@ -56,6 +57,7 @@ fn enter(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: v
         if crossed > 0.0 && transport.eta == 1.0 { rest = max(light * exp(-transport.extinction.rgb * crossed) - straight, vec3f(0.0)); }
         direct += straight;
         through += rest;
+        scatters += balanced(inside) * (straight + rest);
         let weight = luminance(straight + rest);
         direction -= weight * bent(arriving.to_light, normal);
         cosines += weight * inside;
@@ -65,7 +67,7 @@ fn enter(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: v
     let cone = mean_sky_cosine();
     direction -= weight * cone * normal;
     cosines += weight * cone;
-    let light = (direct + through + diffuse) * tint;
+    let light = (scatters + diffuse) * tint;
     let whole = luminance(direct + through) + weight;
     if whole > 0.0 {
         direction /= whole;

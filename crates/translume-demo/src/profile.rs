@@ -98,6 +98,7 @@ fn medium(arguments: &cli::Profile) -> Result<Medium, Error> {
         sigma_s_prime: arguments.scattering.unwrap_or(named.sigma_s_prime),
         sigma_a: arguments.absorption.unwrap_or(named.sigma_a),
         ior: arguments.ior.unwrap_or(named.ior),
+        ..named
     };
     medium.validate()?;
     if medium.sigma_s_prime.contains(&0.0) {

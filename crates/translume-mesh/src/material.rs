@@ -89,6 +89,8 @@ pub struct Scattering {
     pub sigma_a: [f32; 3],
     /// Index of refraction.
     pub ior: f32,
+    /// Mean cosine g of the phase function, −1..1.
+    pub g: f32,
 }
 
 impl Material {
@@ -123,7 +125,8 @@ impl Material {
         if thin || self.ior <= 0.0 {
             return None;
         }
-        let mut scattering = Scattering { sigma_s_prime: [0.0; 3], sigma_a: [0.0; 3], ior: self.ior };
+        let mut scattering =
+            Scattering { sigma_s_prime: [0.0; 3], sigma_a: [0.0; 3], ior: self.ior, g: scatter.anisotropy };
         for channel in 0..3 {
             let extinction = volume.extinction(channel) / MM_PER_METRE;
             let (scattered, absorbed) = scatter.shares(channel);

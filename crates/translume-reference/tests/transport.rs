@@ -124,6 +124,28 @@ fn a_white_furnace_that_refracts_is_white() {
     assert!(error > 0.06, "what absorbs must be noticed: {error}");
 }
 
+/// From behind, where light that scatters forwards is seen.
+#[test]
+fn light_that_goes_on_straight_is_told() {
+    let subject = sphere().expect("a sphere unwraps");
+    let even = Volume { sigma_s: [0.5, 1.0, 1.5], sigma_a: [0.002, 0.01, 0.02], g: 0.0, ior: 1.0 };
+    let forward = Volume { sigma_s: even.sigma_s.map(|s| 5.0 * s), g: 0.8, ..even };
+    let lights =
+        [Light::Directional { to_light: [0.8, 0.0, -0.6], irradiance: [PI; 3], shadow: true, region: None }];
+    let tracer = PathTracer::new(&BALL, forward, &lights).unwrap();
+    let mut trace = tracer.trace(CAMERA, 1);
+    trace.pass(600, |_| true);
+    let truth = trace.estimate();
+    let [told, untold] = [forward, even]
+        .map(|volume| subject.picture(volume, &lights, Tier::Layers))
+        .map(|picture| errors(&picture, &truth.radiance, &filled(&picture)));
+    for k in 0..3 {
+        let ([told, bias], [untold, _]) = (told[k], untold[k]);
+        println!("{k}: {told:.3} / {bias:+.3}, as if it scattered evenly {untold:.3}");
+        assert!(told < 0.7 * untold, "{k}: {told} {untold}, {bias}");
+    }
+}
+
 #[test]
 fn closer_to_paths_than_a_dipole() {
     let subject = sphere().expect("a sphere unwraps");

@@ -153,7 +153,7 @@ mod tests {
     #[test]
     fn media_at_the_limits_stay_finite() {
         for (s, a, ior) in [(0.0, 0.0, 1.3), (0.0, 1.0, 1.5), (1e4, 0.0, 0.7), (1e-4, 1e-6, 3.0)] {
-            let medium = Medium { sigma_s_prime: [s; 3], sigma_a: [a; 3], ior };
+            let medium = Medium { sigma_s_prime: [s; 3], sigma_a: [a; 3], ior, g: 0.0 };
             let layout = MediumLayout::new(&medium);
             let values = layout.radii.as_flattened().iter().chain(&layout.share).chain(&layout.z_virtual);
             assert!(values.into_iter().all(|x| x.is_finite() && *x >= 0.0), "{medium:?}");

@@ -261,7 +261,7 @@ mod tests {
     #[test]
     fn opaque_and_clear_media_stay_finite() {
         for scale in [1e-6, 1e-3, 1.0, 1e3, 1e6] {
-            let medium = Medium { sigma_s_prime: [scale; 3], sigma_a: [0.1 * scale; 3], ior: 1.3 };
+            let medium = Medium { sigma_s_prime: [scale; 3], sigma_a: [0.1 * scale; 3], ior: 1.3, g: 0.0 };
             let layout = KernelTableLayout::new(KernelRange { least_spread: 1e-3, longest: 1e3 });
             let channels = Profile::Dipole.channels(&medium);
             for texel in build(layout, &channels) {

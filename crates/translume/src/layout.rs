@@ -310,11 +310,12 @@ pub(crate) struct TransportLayout {
     pub bend: f32,
     pub along: f32,
     pub lean: f32,
-    pub padding: f32,
+    pub anisotropy: f32,
     pub eye: [f32; 3],
     pub light_bounds: u32,
     pub offsets: [[u32; 4]; 4],
     pub sources: [[u32; 4]; 4],
+    pub spread: [[f32; 4]; 64],
 }
 
 /// The sites around one.

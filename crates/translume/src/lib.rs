@@ -56,6 +56,7 @@ mod light_points;
 mod lighting;
 mod medium;
 mod memory;
+mod phase;
 mod pose;
 mod profile;
 mod quadrature;

@@ -12,7 +12,7 @@ use crate::Error;
 /// use translume::Medium;
 ///
 /// let wax = Medium::preset("wax")?;
-/// let green_glass_paste = Medium { sigma_s_prime: [0.8, 1.0, 0.8], sigma_a: [0.05, 0.002, 0.03], ior: 1.5 };
+/// let green_glass_paste = Medium { sigma_s_prime: [0.8, 1.0, 0.8], sigma_a: [0.05, 0.002, 0.03], ior: 1.5, g: 0.8 };
 /// green_glass_paste.validate()?;
 /// # Ok::<(), translume::Error>(())
 /// ```
@@ -24,7 +24,14 @@ pub struct Medium {
     pub sigma_a: [f32; 3],
     /// Index of refraction inside over outside. Finite, > 0; exactly 1 means no surface reflection at all.
     pub ior: f32,
+    /// Mean cosine g of the phase function, by Henyey and Greenstein: −0.99..=0.99, with 0 for even scattering, which is what every preset has. Only
+    /// [`Transport::BoundaryLayers`](crate::Transport::BoundaryLayers) asks for it, for light that goes nearly straight on; to all else the
+    /// reduced coefficient says enough.
+    pub g: f32,
 }
+
+/// Of g: a beam that is turned less than by a hundredth on average is one that goes on.
+const MOST_FORWARD: f32 = 0.99;
 
 impl Default for Medium {
     /// [`Medium::MARBLE`].
@@ -36,7 +43,7 @@ impl Default for Medium {
 macro_rules! presets {
     ($($(#[$doc:meta])* $constant:ident $name:literal: [$($s:literal),+] [$($a:literal),+] $ior:literal;)+) => {
         impl Medium {
-            $($(#[$doc])* pub const $constant: Self = Self { sigma_s_prime: [$($s),+], sigma_a: [$($a),+], ior: $ior };)+
+            $($(#[$doc])* pub const $constant: Self = Self { sigma_s_prime: [$($s),+], sigma_a: [$($a),+], ior: $ior, g: 0.0 };)+
 
             /// Every preset with its name.
             pub const PRESETS: &[(&'static str, Self)] = &[$(($name, Self::$constant)),+];
@@ -113,11 +120,13 @@ impl Medium {
                 return Err(Error::Medium { field, value, range: "finite and not negative (1/mm)" });
             }
         }
-        if self.ior > 0.0 && self.ior.is_finite() {
-            Ok(())
-        } else {
-            Err(Error::Medium { field: "ior", value: self.ior, range: "finite and above 0" })
+        if !(self.ior > 0.0 && self.ior.is_finite()) {
+            return Err(Error::Medium { field: "ior", value: self.ior, range: "finite and above 0" });
         }
+        if !(-MOST_FORWARD..=MOST_FORWARD).contains(&self.g) {
+            return Err(Error::Medium { field: "g", value: self.g, range: "between −0.99 and 0.99" });
+        }
+        Ok(())
     }
 }
 
@@ -129,8 +138,8 @@ impl TryFrom<Scattering> for Medium {
     /// # Errors
     /// As [`Medium::validate`].
     fn try_from(scattering: Scattering) -> Result<Self, Error> {
-        let Scattering { sigma_s_prime, sigma_a, ior } = scattering;
-        let medium = Self { sigma_s_prime, sigma_a, ior };
+        let Scattering { sigma_s_prime, sigma_a, ior, g } = scattering;
+        let medium = Self { sigma_s_prime, sigma_a, ior, g };
         medium.validate()?;
         Ok(medium)
     }
@@ -143,7 +152,8 @@ mod tests {
     #[test]
     fn the_scattering_of_a_material_is_a_medium() {
         let wax = Medium::WAX;
-        let scattering = Scattering { sigma_s_prime: wax.sigma_s_prime, sigma_a: wax.sigma_a, ior: wax.ior };
+        let scattering =
+            Scattering { sigma_s_prime: wax.sigma_s_prime, sigma_a: wax.sigma_a, ior: wax.ior, g: 0.0 };
         assert_eq!(Medium::try_from(scattering), Ok(wax));
         let endless = Scattering { sigma_a: [0.0, f32::INFINITY, 0.0], ..scattering };
         assert!(Medium::try_from(endless).unwrap_err().to_string().contains("sigma_a (green)"));
@@ -173,5 +183,7 @@ mod tests {
         assert!(medium.validate().unwrap_err().to_string().contains("ior"));
         medium = Medium { sigma_s_prime: [1.0, f32::INFINITY, 1.0], ..Medium::WAX };
         assert!(medium.validate().unwrap_err().to_string().contains("(green)"));
+        medium = Medium { g: 1.0, ..Medium::WAX };
+        assert!(medium.validate().unwrap_err().to_string().contains("g is 1"));
     }
 }

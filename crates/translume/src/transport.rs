@@ -3,7 +3,7 @@
 use crate::layout::TransportLayout;
 use crate::stages::cluster::Tree;
 use crate::stages::transport::Sites;
-use crate::{Error, Medium, fresnel};
+use crate::{Error, Medium, fresnel, phase};
 
 /// What the way of light from where it enters to where it leaves is taken to be.
 ///
@@ -138,11 +138,12 @@ pub(crate) fn layout(medium: &Medium, sites: &Sites, groups: u32, texel: f32) ->
         bend: boundary.bend as f32,
         along: boundary.along as f32,
         lean: boundary.lean as f32,
-        padding: 0.0,
+        anisotropy: medium.g,
         eye: [0.0; 3],
         light_bounds: tree.sources() + tree.clusters(),
         offsets: Tree::packed(&tree.offsets),
         sources: Tree::packed(&tree.source_offsets),
+        spread: phase::table(medium.g),
     }
 }
 
@@ -237,7 +238,8 @@ mod tests {
 
     #[test]
     fn sites_are_as_wide_as_light_wanders() {
-        let medium = |scattering| Medium { sigma_s_prime: [scattering; 3], sigma_a: [0.0; 3], ior: 1.0 };
+        let medium =
+            |scattering| Medium { sigma_s_prime: [scattering; 3], sigma_a: [0.0; 3], ior: 1.0, g: 0.0 };
         let level = |scattering, texels| site_level(&medium(scattering), texels, 0.2, false);
         assert_eq!([11.0, 4.0, 2.0, 0.1].map(|scattering| level(scattering, 200_000)), [0, 1, 2, 2]);
         assert_eq!([10_000, 40_000, 70_000].map(|texels| level(0.1, texels)), [0, 1, 2]);
@@ -245,7 +247,8 @@ mod tests {
 
     #[test]
     fn a_solver_pays_where_light_crosses_a_site() {
-        let medium = |scattering| Medium { sigma_s_prime: [scattering; 3], sigma_a: [0.0; 3], ior: 1.0 };
+        let medium =
+            |scattering| Medium { sigma_s_prime: [scattering; 3], sigma_a: [0.0; 3], ior: 1.0, g: 0.0 };
         let is_worth = |scattering, texels, texel| pays(&medium(scattering), texels, texel);
         assert!(is_worth(4.0, 200_000, 0.2), "sixteen texels to a site");
         assert!(!is_worth(6.0, 200_000, 0.2), "too many sites, or too wide");

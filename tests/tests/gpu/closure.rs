@@ -12,7 +12,7 @@ const TEXEL: f32 = SIDE / SIZE as f32;
 /// Reduced albedos of red, green and blue, which share the mean free path, mm.
 fn medium(albedo: [f32; 3], mean_free_path: f32, ior: f32) -> Medium {
     let sigma_s_prime = albedo.map(|a| a / mean_free_path);
-    Medium { sigma_s_prime, sigma_a: albedo.map(|a| (1.0 - a) / mean_free_path), ior }
+    Medium { sigma_s_prime, sigma_a: albedo.map(|a| (1.0 - a) / mean_free_path), ior, g: 0.0 }
 }
 
 /// What leaves within a square around the point of entry: in direction φ it ends at half the side over the larger of

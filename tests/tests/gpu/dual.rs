@@ -154,7 +154,7 @@ fn a_tolerance_is_kept() {
 /// Red, green and blue of a medium that is the same in all of them, against one in which they differ by next to nothing.
 fn grey(method: Method, other: f32) -> Check {
     let shown = |blue: f32| {
-        let medium = Medium { sigma_s_prime: [1.0, 1.0, blue], sigma_a: [0.02; 3], ior: 1.3 };
+        let medium = Medium { sigma_s_prime: [1.0, 1.0, blue], sigma_a: [0.02; 3], ior: 1.3, g: 0.0 };
         let mut fixture = Fixture::new(&creature(), |d| (d.medium, d.mm_per_unit) = (medium, 0.1));
         doubles(&in_the_sun(&mut fixture, method))
     };

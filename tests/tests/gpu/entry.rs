@@ -19,7 +19,7 @@ const DIFFUSE: Profile = Profile::HalfSpace(Entry::Diffuse);
 fn medium(ior: f32) -> Medium {
     let extinction = 4.0 / TEXEL;
     let sigma_s_prime = ALBEDOS.map(|a| a * extinction);
-    Medium { sigma_s_prime, sigma_a: ALBEDOS.map(|a| (1.0 - a) * extinction), ior }
+    Medium { sigma_s_prime, sigma_a: ALBEDOS.map(|a| (1.0 - a) * extinction), ior, g: 0.0 }
 }
 
 /// What walks return that enter at a cosine to the normal outside; or from all sides.

@@ -200,7 +200,7 @@ fn auto_chooses_by_cost() {
     let small = View { pixels: [16; 2], ..view() };
     // 5,000 vertices and 2,600 texels; a mean free path of .5 to 1.4 mm.
     assert_eq!(chosen(&creature(), Medium::SKIMMILK, None), Evaluate::PerTexel);
-    let thin = Medium { sigma_s_prime: [0.05; 3], sigma_a: [0.001; 3], ior: 1.3 };
+    let thin = Medium { sigma_s_prime: [0.05; 3], sigma_a: [0.001; 3], ior: 1.3, g: 0.0 };
     assert_eq!(chosen(&creature(), thin, Some(small)), Evaluate::PerFragment);
     assert_eq!(chosen(&plane(50.0, 64), thin, None), Evaluate::PerVertex);
     assert_eq!(chosen(&plane(50.0, 64), Medium::SPECTRALON, None), Evaluate::PerTexel);

@@ -31,7 +31,8 @@ fn show(
 /// Relative RMSE of the texels' exitance against the converged integral at their centres, at 400 of them.
 fn total_error(mesh: &Mesh, options: &AtlasOptions) -> f64 {
     // Mean free paths of .3 to 1.4 mm: skim milk's green, marble's red and the first skin's blue.
-    let medium = Medium { sigma_s_prime: [2.19, 1.22, 1.01], sigma_a: [0.0021, 0.0025, 0.48], ior: 1.3 };
+    let medium =
+        Medium { sigma_s_prime: [2.19, 1.22, 1.01], sigma_a: [0.0021, 0.0025, 0.48], ior: 1.3, g: 0.0 };
     let sun = Light::Directional(DirectionalLight {
         to_light: [0.4, 0.7, 0.5],
         shadow: false,

@@ -23,7 +23,7 @@ fn exitance(fixture: &mut Fixture, lights: &[Light]) -> Vec<[f64; 3]> {
 /// Half a plane in the sun: real and virtual sources of flat ground are the classical dipole's.
 fn flat(profile: Profile, method: Method) -> Check {
     // A mean free path of one and a half to two texels.
-    let medium = Medium { sigma_s_prime: [0.4, 0.45, 0.5], sigma_a: [0.001, 0.01, 0.1], ior: 1.3 };
+    let medium = Medium { sigma_s_prime: [0.4, 0.45, 0.5], sigma_a: [0.001, 0.01, 0.1], ior: 1.3, g: 0.0 };
     let half = Region { low: [0.0, -1.0, -100.0], high: [100.0, 1.0, 100.0] };
     let shown = |profile: Profile, method| {
         let mut fixture = Fixture::new(&plane(60.0, 48), |d| {
@@ -71,7 +71,8 @@ fn twin(sources: &[Source], medium: &Medium, receivers: &[usize], lean: f64) -> 
 
 fn round(method: Method, lean: f64) -> Check {
     // A mean free path of two to four texels, a fifth of the radius.
-    let medium = Medium { sigma_s_prime: [0.1, 0.08, 0.06], sigma_a: [0.0005, 0.004, 0.03], ior: 1.3 };
+    let medium =
+        Medium { sigma_s_prime: [0.1, 0.08, 0.06], sigma_a: [0.0005, 0.004, 0.03], ior: 1.3, g: 0.0 };
     let mut fixture = Fixture::new(&sphere_with(64), |d| {
         (d.medium, d.profile, d.method) = (medium, Profile::DipoleOriented, method);
     });

@@ -23,7 +23,7 @@ fn show(fixture: &mut Fixture) -> Vec<[f64; 3]> {
 }
 
 fn fat() -> Medium {
-    Medium { sigma_s_prime: [1.2, 1.1, 1.0], sigma_a: [0.002, 0.004, 0.01], ior: 1.4 }
+    Medium { sigma_s_prime: [1.2, 1.1, 1.0], sigma_a: [0.002, 0.004, 0.01], ior: 1.4, g: 0.0 }
 }
 
 fn layered(thickness_mm: f32) -> Profile {

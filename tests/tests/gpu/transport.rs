@@ -5,19 +5,21 @@ use translume::{
     AmbientLight, Camera, DirectionalLight, Error, Light, LookAt, Medium, Method, Profile, Transport, View,
     readback,
 };
+use translume_reference::composite::{Camera as TwinCamera, Exit, look_up, render};
 use translume_reference::fresnel::hemispherical_transmittance;
 use translume_reference::gather::Source;
 use translume_reference::path::{Closed, Volume};
-use translume_reference::transport::{Body, Solution, sites};
+use translume_reference::transport::{Body, Solution, Tier, picture, sites};
 use translume_tests::{
     Check, Fixture, Model, Pose, at_least, at_most, creature, gpu, holds, light, notices, rmse_by_area,
     sphere_with,
 };
 
 /// A radius of the sphere is 5, 25 and 80 mean free paths.
-const MEDIUM: Medium = Medium { sigma_s_prime: [0.1, 0.5, 1.5], sigma_a: [0.0, 0.01, 0.1], ior: 1.0 };
+const MEDIUM: Medium = Medium { sigma_s_prime: [0.1, 0.5, 1.5], sigma_a: [0.0, 0.01, 0.1], ior: 1.0, g: 0.0 };
 /// A mean free path is a texel of the creature or more, and its ears are thin.
-const THIN: Medium = Medium { sigma_s_prime: [0.1, 0.2, 0.35], sigma_a: [0.0, 0.001, 0.02], ior: 1.0 };
+const THIN: Medium =
+    Medium { sigma_s_prime: [0.1, 0.2, 0.35], sigma_a: [0.0, 0.001, 0.02], ior: 1.0, g: 0.0 };
 
 fn sun(to_light: [f32; 3]) -> Light {
     Light::Directional(DirectionalLight { to_light, irradiance: [3.0; 3], ..Default::default() })
@@ -161,7 +163,7 @@ fn a_frame_goes_on_from_the_last() {
 #[ignore = "minutes on a software rasteriser; for reading"]
 fn sixty_frames_in_figures() {
     const MILK: Medium =
-        Medium { sigma_s_prime: [0.7, 1.22, 1.9], sigma_a: [0.0014, 0.0025, 0.0142], ior: 1.0 };
+        Medium { sigma_s_prime: [0.7, 1.22, 1.9], sigma_a: [0.0014, 0.0025, 0.0142], ior: 1.0, g: 0.0 };
     let Some(folder) = std::env::var_os("TRANSLUME_MODELS") else { return };
     let mesh = translume_mesh::load::load(&std::path::Path::new(&folder).join("stanford-bunny.obj"))
         .expect("the bunny")
@@ -295,7 +297,7 @@ fn furnace(medium: Medium, bound: f64) -> Check {
 /// Light that goes through without scattering is missing: e^−10 along a diameter. The atlas: measured 1.6 %.
 #[test]
 fn a_white_body_vanishes_in_a_white_sky() {
-    let white = Medium { sigma_s_prime: [0.1, 0.2, 0.3], sigma_a: [0.0; 3], ior: 1.0 };
+    let white = Medium { sigma_s_prime: [0.1, 0.2, 0.3], sigma_a: [0.0; 3], ior: 1.0, g: 0.0 };
     holds(furnace(white, 0.025));
     notices(furnace(Medium { sigma_a: [0.002; 3], ..white }, 0.025));
 }
@@ -332,7 +334,7 @@ fn seen_in_a_furnace(medium: Medium, bound: f64) -> Check {
 /// Measured 1.0 %: a ball of ten mean free paths in red, of thirty in blue.
 #[test]
 fn layers_of_a_white_body_are_white() {
-    let white = Medium { sigma_s_prime: [0.2, 0.4, 0.6], sigma_a: [0.0; 3], ior: 1.0 };
+    let white = Medium { sigma_s_prime: [0.2, 0.4, 0.6], sigma_a: [0.0; 3], ior: 1.0, g: 0.0 };
     holds(seen_in_a_furnace(white, 0.03));
     notices(seen_in_a_furnace(Medium { sigma_a: [0.002; 3], ..white }, 0.03));
 }
@@ -341,7 +343,7 @@ fn layers_of_a_white_body_are_white() {
 #[test]
 fn layers_of_a_white_body_that_refracts_are_white() {
     for ior in [1.1, 1.3, 1.5] {
-        let white = Medium { sigma_s_prime: [0.2, 0.4, 0.6], sigma_a: [0.0; 3], ior };
+        let white = Medium { sigma_s_prime: [0.2, 0.4, 0.6], sigma_a: [0.0; 3], ior, g: 0.0 };
         holds(seen_in_a_furnace(white, 0.02));
         notices(seen_in_a_furnace(Medium { sigma_a: [0.002; 3], ..white }, 0.02));
     }
@@ -385,7 +387,7 @@ fn balls_are_as_bright_as(exact: &[[f64; 5]; 3], bound: f64) -> Check {
     let radius = 50.0;
     let [sigma_s_prime, sigma_a] = [[0.99, 0.99, 0.9], [0.01, 0.01, 0.1]]
         .map(|share| [0, 1, 2].map(|k| share[k] * [3.0, 6.5, 10.0][k] / radius));
-    let fixture = ball_in_a_sky(Medium { sigma_s_prime, sigma_a, ior: 1.0 });
+    let fixture = ball_in_a_sky(Medium { sigma_s_prime, sigma_a, ior: 1.0, g: 0.0 });
     let sources: Vec<Source> = fixture.sources();
     let expected = |(source, found): (&Source, [f64; 3])| -> ([f64; 3], [f64; 3]) {
         let away: [f64; 3] = std::array::from_fn(|k| f64::from(EYE[k]) - source.position[k]);
@@ -409,6 +411,49 @@ fn small_balls_are_as_bright_as_they_are() {
     holds(balls_are_as_bright_as(&BALLS, 0.02));
     let [three, six, ten] = BALLS;
     notices(balls_are_as_bright_as(&[six, three, ten], 0.02));
+}
+
+const TWIN_CAMERA: TwinCamera = TwinCamera {
+    eye: [0.0, 0.0, 300.0],
+    target: [0.0; 3],
+    up: [0.0, 1.0, 0.0],
+    fov: 0.4,
+    width: 24,
+    height: 24,
+};
+
+/// A ball with the sun behind it in both pictures, where light of the twin goes on straight by this mean cosine.
+fn looks_like_its_twin(medium: Medium, g: f64, bound: f64) -> Check {
+    let (model, pose, lights) = (sphere_with(64), Pose::rest(0), [sun([0.6, 0.0, -0.8])]);
+    let mut fixture = fixture(&model, medium, Transport::BoundaryLayers);
+    let mut frame = pose.frame(&lights);
+    frame.view = Some(view_from(EYE));
+    fixture.run(&frame);
+    let surface = fixture.twin_surface(&pose);
+    let exit = Exit { eta: 1.0, normalised: false };
+    let exitance = fixture.exitance();
+    let found = render(&TWIN_CAMERA, &surface, exit, |hit| look_up(&model.atlas, &exitance, hit));
+    let shape = Closed::new(&surface).map_err(|problem| format!("{problem}"))?;
+    let twins: Vec<_> = lights.iter().map(|each| light(each, 1.0)).collect();
+    let volume = Volume::new(&translume_twin::medium(&medium), g);
+    let body = Body { shape: &shape, volume, lights: &twins };
+    let solution = Solution::new(body, sites(&model.atlas, &surface, &fixture.sources()), 6);
+    let exact = picture(&TWIN_CAMERA, &surface, &model.atlas, &solution, Tier::Layers);
+    let (mut square, mut whole) = (0.0, 0.0);
+    for (found, exact) in found.radiance.iter().zip(&exact.radiance) {
+        for k in 0..3 {
+            square += f64::from(found[k] - exact[k]).powi(2);
+            whole += f64::from(exact[k]).powi(2);
+        }
+    }
+    at_most("against the twin's picture", (square / whole).sqrt(), bound)
+}
+
+#[test]
+fn light_goes_on_straight_as_in_the_twin() {
+    let forward = Medium { g: 0.8, ..THIN };
+    holds(looks_like_its_twin(forward, 0.8, 0.1));
+    notices(looks_like_its_twin(forward, 0.0, 0.1));
 }
 
 fn view_from(eye: [f32; 3]) -> View {

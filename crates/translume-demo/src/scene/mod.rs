@@ -165,7 +165,7 @@ pub enum Normals {
 pub struct Material {
     pub sigma_s_prime: [f32; 3],
     pub sigma_a: [f32; 3],
-    /// Mean cosine of the phase function. `sigma_s_prime` is already reduced by it, and diffusion needs no more.
+    /// Mean cosine of the phase function, by which `sigma_s_prime` is already reduced.
     #[serde(default)]
     pub g: f32,
     #[serde(default = "one")]
@@ -263,7 +263,12 @@ impl Scene {
         if let Some(name) = &self.medium {
             return Ok(Some(Medium::preset(name)?));
         }
-        Ok(self.material.map(|m| Medium { sigma_s_prime: m.sigma_s_prime, sigma_a: m.sigma_a, ior: m.eta }))
+        Ok(self.material.map(|m| Medium {
+            sigma_s_prime: m.sigma_s_prime,
+            sigma_a: m.sigma_a,
+            ior: m.eta,
+            g: m.g,
+        }))
     }
 
     /// How the scene's mesh is to be deformed.

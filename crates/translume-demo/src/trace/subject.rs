@@ -57,11 +57,10 @@ impl Subject {
         let lamps = scene.lights.clone().unwrap_or_else(|| seen.lamps(VIEW));
         let twins = lamps.iter().map(|light| light.twins(opened.just_below_y0(), mm_per_unit));
         let lights = twins.collect::<Result<Vec<_>, _>>()?.concat();
-        let g = scene.material.map_or(0.0, |material| f64::from(material.g));
         let medium = scene.medium()?.unwrap_or_default();
         Ok(Self {
             body,
-            volume: Volume::new(&translume_twin::medium(&medium), g),
+            volume: Volume::new(&translume_twin::medium(&medium), medium.g.into()),
             lights,
             camera: in_mm(&camera, mm_per_unit),
         })

@@ -53,12 +53,12 @@ fn coefficients_are_those_of_the_drafts() {
 /// A half of white light is gone after a centimetre: 69.3/m. Half of what a deep volume sends back: s = 0.2972.
 #[test]
 fn a_worked_example() {
-    let Scattering { sigma_s_prime, sigma_a, ior } =
+    let Scattering { sigma_s_prime, sigma_a, ior, g } =
         material(0.5, 0.01, 0.5, 0.0, ScatterDraft::VolumeScatter).scattering().unwrap();
     assert!((sigma_s_prime[1] - 0.063_19).abs() < 1e-4, "{sigma_s_prime:?}");
     assert!((sigma_a[1] - 0.006_12).abs() < 1e-4, "{sigma_a:?}");
     assert!((sigma_s_prime[1] + sigma_a[1] - 2.0_f32.ln() / 10.0).abs() < 1e-6);
-    assert_eq!(ior, 1.5);
+    assert_eq!((ior, g), (1.5, 0.0));
 }
 
 /// The reduced albedo of the newer draft does not depend on g.

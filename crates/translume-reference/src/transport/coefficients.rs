@@ -13,16 +13,18 @@ const CLEAR: f64 = 1e-12;
 /// One channel of a medium.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Coefficients {
-    /// Extinction σ_t, 1/mm.
+    /// Extinction σ_t, reduced, 1/mm.
     pub extinction: f64,
-    /// σ_s / σ_t.
+    /// σ_s' / σ_t.
     pub albedo: f64,
-    /// Grosjean's (2σ_a + σ_s) / 3σ_t², mm.
+    /// Grosjean's (2σ_a + σ_s') / 3σ_t², mm.
     pub diffusion: f64,
     /// √(σ_a / D), 1/mm.
     pub decay: f64,
     /// c_G: what leaves per fluence at the surface, by Robin's condition.
     pub robin: f64,
+    /// Mean cosine of the phase function.
+    pub g: f64,
     /// Of the surface; the same in all channels.
     pub boundary: Boundary,
 }
@@ -32,11 +34,20 @@ impl Coefficients {
         let boundary = Boundary::of(volume.ior);
         let robin = 1.0 / (3.0 * boundary.end);
         std::array::from_fn(|k| {
-            let absorption = volume.sigma_a[k].max(CLEAR - volume.sigma_s[k]);
-            let extinction = volume.sigma_s[k] + absorption;
-            let diffusion = (2.0 * absorption + volume.sigma_s[k]) / (3.0 * extinction * extinction);
+            let scattering = volume.sigma_s[k] * (1.0 - volume.g);
+            let absorption = volume.sigma_a[k].max(CLEAR - scattering);
+            let extinction = scattering + absorption;
+            let diffusion = (2.0 * absorption + scattering) / (3.0 * extinction * extinction);
             let decay = (absorption / diffusion).sqrt();
-            Self { extinction, albedo: volume.sigma_s[k] / extinction, diffusion, decay, robin, boundary }
+            Self {
+                extinction,
+                albedo: scattering / extinction,
+                diffusion,
+                decay,
+                robin,
+                g: volume.g,
+                boundary,
+            }
         })
     }
 

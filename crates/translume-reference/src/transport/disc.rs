@@ -130,6 +130,7 @@ mod tests {
             diffusion: 0.4,
             decay,
             robin: 0.5,
+            g: 0.0,
             boundary: Boundary::of(1.0),
         }
     }

@@ -35,6 +35,7 @@ mod disc;
 mod equation;
 mod krylov;
 mod layer;
+mod phase;
 mod picture;
 mod rays;
 mod shortfall;
@@ -54,6 +55,7 @@ use crate::{Light, Surface};
 use coefficients::Coefficients;
 use equation::Equation;
 pub use layer::{Layers, Seen};
+pub use phase::spread;
 pub use picture::{Tier, picture};
 use rays::Rays;
 use source::Source;
@@ -69,7 +71,7 @@ pub fn shortfall(volume: &Volume) -> [f64; 3] {
 pub struct Body<'a> {
     /// Where it is.
     pub shape: &'a dyn Shape,
-    /// What it is made of. g = 0 is assumed: σ_s is the reduced coefficient.
+    /// What it is made of.
     pub volume: Volume,
     /// What shines on it.
     pub lights: &'a [Light],

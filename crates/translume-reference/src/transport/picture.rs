@@ -5,6 +5,7 @@ use std::f64::consts::PI;
 use translume_mesh::Atlas;
 
 use super::layer::{ALONG, MOST_ALONG, Seen};
+use super::phase::balanced;
 use super::shortfall::shortfall;
 use super::single::single;
 use super::source::Lamps;
@@ -112,14 +113,20 @@ impl Eye<'_> {
             sites.iter().map(|(site, weight)| weight * self.solution.equation.bulge(*site)).sum::<f64>();
         let seen = Seen { sites, cosine: cosine.max(GRAZING), chord, along, far };
         let many = layers.radiance(&seen);
-        let once = single(&self.solution.medium, rays, &self.lamps, (ray, &segments), &mut dice);
+        let seen_along = (ray, segments.as_slice(), seen.cosine);
+        let once = single(&self.solution.medium, rays, &self.lamps, seen_along, &mut dice);
         // Parts of the ray behind the first are out of the layers' sight.
         let twice = twice(self.solution, (place, direction), seen.cosine, chord);
         let leaves = transmittance(rays.ior, outside) / (rays.ior * rays.ior);
         std::array::from_fn(|k| {
             let medium = &self.solution.medium[k];
             let lacking = self.shortfall[k] * medium.lean(seen.cosine) * medium.along(bulge);
-            leaves * (many[k] + once[k] + lacking * twice[k])
+            // Light of lamps that entered close by; what comes from afar leaves as it does where all scatters evenly.
+            let lit = |(site, weight): &(usize, f64)| weight * self.solution.sources[*site].aimed[k];
+            let lit = seen.sites.iter().map(lit).sum::<f64>();
+            let close = (lit / (PI * many[k]).max(1e-30)).min(1.0);
+            let balance = 1.0 + close * (balanced(medium.g, seen.cosine) - 1.0);
+            leaves * (balance * (many[k] + lacking * twice[k]) + once[k])
         })
     }
 }

@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use super::coefficients::Coefficients;
+use super::phase::{kept, spread};
 use super::rays::Rays;
 use super::source::Lamps;
 use crate::dice::Dice;
@@ -21,12 +22,12 @@ const DIRECTIONS: u32 = 8;
 /// What a ray has left behind dimmer than this is not worth marching.
 const DIM: f64 = 1e-4;
 
-/// Radiance in each channel along a ray, W/(m² sr); `segments` are its inside parts.
+/// Radiance in each channel along a ray, W/(m² sr); `segments` are its inside parts, and it leaves at a cosine inside.
 pub(super) fn single(
     medium: &[Coefficients; 3],
     rays: &Rays<'_>,
     lamps: &Lamps,
-    ((origin, direction), segments): ((DVec3, DVec3), &[[f64; 2]]),
+    ((origin, direction), segments, leaves): ((DVec3, DVec3), &[[f64; 2]], f64),
     dice: &mut Dice,
 ) -> [f64; 3] {
     let mut sum = [0.0; 3];
@@ -42,8 +43,8 @@ pub(super) fn single(
                 let part = (f64::from(step) + dice.roll()) / f64::from(STEPS);
                 let way = (-(-part * share).ln_1p() / channel.extinction).min(to - from);
                 let at = origin + direction * (from + way);
-                let light: f64 =
-                    lamps.0.iter().map(|lamp| arriving(lamp, rays, channel, (at, k), dice)).sum();
+                let place = Place { at, direction, leaves, seen_along: before + way, channel: k };
+                let light: f64 = lamps.0.iter().map(|lamp| arriving(lamp, rays, channel, &place, dice)).sum();
                 sum[k] += left * share / f64::from(STEPS) * channel.albedo / (4.0 * PI) * light;
             }
         }
@@ -52,27 +53,52 @@ pub(super) fn single(
     sum
 }
 
-/// ∫ L dω over a light at a point of the volume, W/m².
-fn arriving(
-    lamp: &Lamp,
-    rays: &Rays<'_>,
-    medium: &Coefficients,
-    (at, channel): (DVec3, usize),
-    dice: &mut Dice,
-) -> f64 {
+/// Where a ray of view is met by light.
+struct Place {
+    at: DVec3,
+    /// Of the ray of view, inwards, and its cosine at the surface.
+    direction: DVec3,
+    leaves: f64,
+    /// How much of it is inside up to there, mm.
+    seen_along: f64,
+    channel: usize,
+}
+
+impl Place {
+    /// How much more light from this direction, which comes in through this surface and so far inside, is scattered towards the eye than if it were scattered
+    /// evenly. Light from all sides is.
+    fn brighter(&self, medium: &Coefficients, lamp: &Lamp, (ray, normal): (DVec3, DVec3), way: f64) -> f64 {
+        if medium.g == 0.0 || !lamp.is_aimed_at() {
+            return 1.0;
+        }
+        let depth = medium.albedo * medium.extinction * (self.seen_along + way);
+        1.0 + kept(spread(medium.g, depth, ray.dot(self.direction)), depth, [normal.dot(ray), self.leaves])
+    }
+}
+
+/// ∫ L dω over a light at a point of the volume, W/m², as if it were scattered evenly.
+fn arriving(lamp: &Lamp, rays: &Rays<'_>, medium: &Coefficients, place: &Place, dice: &mut Dice) -> f64 {
+    let Place { at, channel, .. } = *place;
     let count = if lamp.has_no_extent() { 1 } else { DIRECTIONS };
     let mut sum = 0.0;
     for _ in 0..count {
         let Some(aim) = towards(lamp, at, dice) else { continue };
         if rays.ior != 1.0 {
-            sum += refracted(lamp, rays, medium, (at, channel), &aim);
+            sum += refracted(lamp, rays, medium, place, &aim);
             continue;
         }
         let segments = rays.segments(at, aim.direction, aim.distance);
         let Some([_, last]) = segments.last() else { continue };
         if is_lit(lamp.region(), at + aim.direction * *last) {
             let inside: f64 = segments.iter().map(|[from, to]| to - from).sum();
-            sum += aim.light[channel] * (-medium.extinction * inside).exp();
+            let brighter = if medium.g == 0.0 {
+                1.0
+            } else {
+                let surface = rays.shape.first(at, aim.direction, true, f64::INFINITY);
+                let normal = surface.map_or(aim.direction, |surface| surface.normal.normalize());
+                place.brighter(medium, lamp, (aim.direction, normal), inside)
+            };
+            sum += aim.light[channel] * brighter * (-medium.extinction * inside).exp();
         }
     }
     sum / f64::from(count)
@@ -92,24 +118,20 @@ fn bent_way(rays: &Rays<'_>, at: DVec3, outwards: DVec3) -> Option<(DVec3, Cross
 }
 
 /// What of a lamp that is seen from a place outside in this direction gets there through a surface that refracts. Curved surfaces gather no light.
-fn refracted(
-    lamp: &Lamp,
-    rays: &Rays<'_>,
-    medium: &Coefficients,
-    (at, channel): (DVec3, usize),
-    aim: &Aim,
-) -> f64 {
-    let Some((ray, entry)) = bent_way(rays, at, aim.direction) else { return 0.0 };
-    let (normal, place) = (entry.normal.normalize(), at + ray * entry.t);
+fn refracted(lamp: &Lamp, rays: &Rays<'_>, medium: &Coefficients, place: &Place, aim: &Aim) -> f64 {
+    let Some((ray, entry)) = bent_way(rays, place.at, aim.direction) else { return 0.0 };
+    let (normal, surface) = (entry.normal.normalize(), place.at + ray * entry.t);
     let outside = normal.dot(aim.direction);
     let is_dark = outside <= 0.0
-        || !is_lit(lamp.region(), place)
-        || rays.shape.first(place + normal * rays.offset, aim.direction, false, aim.distance).is_some();
+        || !is_lit(lamp.region(), surface)
+        || rays.shape.first(surface + normal * rays.offset, aim.direction, false, aim.distance).is_some();
     if is_dark {
         return 0.0;
     }
     let squeezed = outside / refracted_cos(rays.ior, outside);
-    aim.light[channel] * squeezed * transmittance(rays.ior, outside) * (-medium.extinction * entry.t).exp()
+    let brighter = place.brighter(medium, lamp, (ray, normal), entry.t);
+    let enters = squeezed * transmittance(rays.ior, outside) * (-medium.extinction * entry.t).exp();
+    aim.light[place.channel] * brighter * enters
 }
 
 /// A direction of a light that is most of the sky is any.

@@ -9,6 +9,7 @@ use super::Site;
 use super::coefficients::Coefficients;
 use super::disc::Disc;
 use super::layer::Depth;
+use super::phase::balanced;
 use super::rays::{Rays, SKY};
 use crate::Light;
 use crate::dice::Dice;
@@ -33,8 +34,9 @@ pub(super) struct Source {
     place: [[DVec3; 3]; COUNT],
     /// Rms depth of each stratum about its mean, mm.
     pub width: [[f64; 3]; COUNT],
-    /// Light that entered, W/m².
+    /// Light that entered and scatters evenly, W/m², and of that what is of lamps.
     pub irradiance: [f64; 3],
+    pub aimed: [f64; 3],
     /// Mean cosine of its directions inside to the normal, inwards; 1 in the dark.
     pub cosine: f64,
     /// How much less φ is at the depth of the value below the surface than from strata that were sheets, W/m².
@@ -48,6 +50,8 @@ struct Beam {
     cosine: f64,
     /// W/m² that enter.
     irradiance: [f64; 3],
+    /// Whether it comes from one side.
+    is_aimed: bool,
     /// Way through the body to the other side, and the way through other parts of it before, mm.
     chord: f64,
     crossed: f64,
@@ -122,7 +126,9 @@ fn beam(rays: &Rays<'_>, site: &Site, aim: &Aim) -> Option<Beam> {
         0.0
     };
     let irradiance = scale(aim.light, outside * transmittance(rays.ior, outside));
-    Some(Beam { direction, cosine, irradiance, chord: rays.chord(site, direction), crossed })
+    // Of a sky every direction is one by itself.
+    let is_aimed = aim.density > 0.0;
+    Some(Beam { direction, cosine, irradiance, is_aimed, chord: rays.chord(site, direction), crossed })
 }
 
 impl Source {
@@ -137,9 +143,11 @@ impl Source {
             let bend = beam.curvature(thickness);
             let sideways = (1.0 - beam.cosine * beam.cosine).max(0.0);
             for (k, channel) in medium.iter().enumerate() {
-                let entered = beam.irradiance[k] * (-channel.extinction * beam.crossed).exp();
+                let balance = if beam.is_aimed { balanced(channel.g, beam.cosine) } else { 1.0 };
+                let entered = balance * beam.irradiance[k] * (-channel.extinction * beam.crossed).exp();
                 let own = Strata::new(channel.extinction * beam.chord);
                 source.irradiance[k] += entered;
+                source.aimed[k] += if beam.is_aimed { entered } else { 0.0 };
                 (sum, slanted) = (sum + entered, slanted + entered * beam.cosine);
                 let z = Depth::of(channel, thickness).0;
                 for (s, (stratum, depth)) in strata.iter_mut().zip(own.depths).enumerate() {

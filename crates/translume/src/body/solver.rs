@@ -8,7 +8,7 @@ use crate::stages::scatter::dual::{Demand, ListSizes, Lists};
 use crate::stages::transport::{self as stage, Inputs, Sites, Steps, TransportMemory, TransportStage};
 use crate::stages::{Stage, StageSet, Stages};
 use crate::timings::Recording;
-use crate::{Error, Frame, Profile, Transport, transport};
+use crate::{Error, Frame, Medium, Profile, Transport, transport};
 use glam::Mat4;
 use std::sync::Arc;
 
@@ -165,7 +165,10 @@ impl Body {
         };
         let sites = self.sites(self.texel_width());
         let groups = TransportMemory::groups(&sites.tree);
-        let layout = transport::layout(&self.medium, &sites, groups, self.texel_width());
+        let gathers = self.solver.runs == Transport::BoundaryLayers && self.medium.ior >= 1.0;
+        // What goes on straight has no part in a diffuse law.
+        let medium = Medium { g: if gathers { self.medium.g } else { 0.0 }, ..self.medium };
+        let layout = transport::layout(&medium, &sites, groups, self.texel_width());
         let solver = &mut self.solver;
         solver.memory =
             solver.memory.take().filter(|memory| memory.serves(demand, sites.level, &self.limits));
@@ -191,7 +194,6 @@ impl Body {
             memory.write(queue, layout, demand.theta);
         }
         let eye = frame.view.as_ref().map(|view| view.camera.in_mm(self.mm_per_unit).1);
-        let gathers = solver.runs == Transport::BoundaryLayers && self.medium.ior >= 1.0;
         let seen = gathers && eye.is_some();
         let elsewhere = eye.is_some_and(|eye| seen && memory.look(queue, eye));
         let looked = elsewhere || seen != solver.steps.seen;

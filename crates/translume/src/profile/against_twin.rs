@@ -25,7 +25,7 @@ fn difference(profile: &Profile, medium: &Medium, twin: &Numeric) -> f64 {
 }
 
 fn media() -> [Medium; 4] {
-    let grey = |s: f32, a: f32, ior: f32| Medium { sigma_s_prime: [s; 3], sigma_a: [a; 3], ior };
+    let grey = |s: f32, a: f32, ior: f32| Medium { sigma_s_prime: [s; 3], sigma_a: [a; 3], ior, g: 0.0 };
     [grey(1.09, 0.013, 1.3), grey(0.5, 0.5, 1.5), grey(0.9, 0.1, 0.8), grey(30.0, 0.0, 1.0)]
 }
 

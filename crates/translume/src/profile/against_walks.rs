@@ -22,6 +22,7 @@ impl Walks {
             sigma_s_prime: [self.albedo as f32; 3],
             sigma_a: [(1.0 - self.albedo) as f32; 3],
             ior: self.ior as f32,
+            g: 0.0,
         }
     }
 
@@ -168,7 +169,7 @@ fn half_spaces_follow_published_walks() {
 fn half_spaces_close() {
     for (profile, entry) in [Entry::Normal, Entry::Diffuse].map(|entry| (Profile::HalfSpace(entry), entry)) {
         let total = |albedo: f32, ior: f32| {
-            let medium = Medium { sigma_s_prime: [albedo; 3], sigma_a: [1.0 - albedo; 3], ior };
+            let medium = Medium { sigma_s_prime: [albedo; 3], sigma_a: [1.0 - albedo; 3], ior, g: 0.0 };
             profile.channels(&medium)[0].total()
         };
         let exact = |single: f32| {

@@ -5,7 +5,7 @@ use std::f64::consts::{LN_2, TAU};
 use std::sync::LazyLock;
 
 fn fat() -> Medium {
-    Medium { sigma_s_prime: [1.2, 1.1, 1.0], sigma_a: [0.002, 0.004, 0.01], ior: 1.4 }
+    Medium { sigma_s_prime: [1.2, 1.1, 1.0], sigma_a: [0.002, 0.004, 0.01], ior: 1.4, g: 0.0 }
 }
 
 fn layers(thickness_mm: f32, below: &[Layer]) -> Profile {
@@ -40,7 +40,7 @@ fn profiles() -> Vec<Profile> {
 fn media() -> Vec<Medium> {
     let albedos = [[0.1_f32, 0.5, 0.9], [0.99, 0.9999, 1.0]];
     let with = |ior: f32| {
-        albedos.map(|albedo| Medium { sigma_s_prime: albedo, sigma_a: albedo.map(|a| 1.0 - a), ior })
+        albedos.map(|albedo| Medium { sigma_s_prime: albedo, sigma_a: albedo.map(|a| 1.0 - a), ior, g: 0.0 })
     };
     [0.8, 1.0, 1.3, 1.5, 2.0].into_iter().flat_map(with).collect()
 }
@@ -129,7 +129,8 @@ fn hard_media_stay_finite() {
     media.extend([1e-6, 1e-3, 1e3, 1e6].map(|scale| (scale, 0.1 * scale)));
     for (scattering, absorption) in media {
         for profile in profiles() {
-            let medium = Medium { sigma_s_prime: [scattering; 3], sigma_a: [absorption; 3], ior: 1.3 };
+            let medium =
+                Medium { sigma_s_prime: [scattering; 3], sigma_a: [absorption; 3], ior: 1.3, g: 0.0 };
             let channels = profile.channels(&medium);
             assert!(Arc::ptr_eq(&channels[0], &channels[2]) || !profile.is_grey(0, 2));
             let texels = build(layout, &channels);
@@ -167,7 +168,7 @@ fn the_better_dipole_has_its_published_total() {
 #[test]
 fn single_scattering_has_its_closed_form() {
     for albedo in [0.01, 0.2, 0.9] {
-        let medium = Medium { sigma_s_prime: [albedo; 3], sigma_a: [1.0 - albedo; 3], ior: 1.0 };
+        let medium = Medium { sigma_s_prime: [albedo; 3], sigma_a: [1.0 - albedo; 3], ior: 1.0, g: 0.0 };
         let [with, without] = [Profile::WithSingleScattering(Diffusion::Dipole), Profile::Dipole]
             .map(|profile| profile.channels(&medium)[0].total());
         let share = 0.5 * (1.0 - LN_2);
@@ -221,8 +222,8 @@ fn a_thick_slab_is_the_dipole() {
 /// Layers of the same medium and of nothing: the stack loses no energy without absorption, and nothing between is nothing.
 #[test]
 fn layers_keep_energy() {
-    let clear = Medium { sigma_s_prime: [0.0; 3], sigma_a: [0.0; 3], ior: 1.3 };
-    let white = Medium { sigma_s_prime: [1.0, 3.0, 10.0], sigma_a: [0.0; 3], ior: 1.3 };
+    let clear = Medium { sigma_s_prime: [0.0; 3], sigma_a: [0.0; 3], ior: 1.3, g: 0.0 };
+    let white = Medium { sigma_s_prime: [1.0, 3.0, 10.0], sigma_a: [0.0; 3], ior: 1.3, g: 0.0 };
     let half_space = [Layer { medium: white, thickness_mm: f32::INFINITY }];
     for radial in layers(0.7, &half_space).channels(&white) {
         // What the tail beyond the samples holds is only extrapolated.
@@ -242,7 +243,7 @@ fn layers_keep_energy() {
 /// Integrated over the plane, what leaves below and what leaves above are what entered.
 #[test]
 fn a_white_slab_passes_what_it_does_not_return() {
-    let white = Medium { sigma_s_prime: [1.0; 3], sigma_a: [0.0; 3], ior: 1.3 };
+    let white = Medium { sigma_s_prime: [1.0; 3], sigma_a: [0.0; 3], ior: 1.3, g: 0.0 };
     let slab = Layers { thickness_mm: 2.0, below: Arc::new([]) };
     let returned = Profile::Multipole(slab.clone()).channels(&white)[0].total();
     let through: f64 = (0..400)

@@ -13,12 +13,12 @@ pub fn scaled(medium: Medium, factor: f32) -> Medium {
 }
 
 fn absorbing(sigma_a: [f32; 3]) -> Medium {
-    Medium { sigma_s_prime: [1.0; 3], sigma_a, ior: 1.3 }
+    Medium { sigma_s_prime: [1.0; 3], sigma_a, ior: 1.3, g: 0.0 }
 }
 
 /// These albedos, with a mean free path of 1 mm.
 fn white(albedo: [f32; 3], ior: f32) -> Medium {
-    Medium { sigma_s_prime: albedo, sigma_a: albedo.map(|a| 1.0 - a), ior }
+    Medium { sigma_s_prime: albedo, sigma_a: albedo.map(|a| 1.0 - a), ior, g: 0.0 }
 }
 
 fn index(ior: f32) -> Medium {
@@ -68,7 +68,7 @@ pub fn rows() -> Vec<Row> {
         row("σ_s' = 0", Scene::ball(Medium { sigma_s_prime: [0.0; 3], ..USUAL }), vec![Dark]),
         row(
             "σ_s' = σ_a = 0",
-            Scene::ball(Medium { sigma_s_prime: [0.0; 3], sigma_a: [0.0; 3], ior: 1.3 }),
+            Scene::ball(Medium { sigma_s_prime: [0.0; 3], sigma_a: [0.0; 3], ior: 1.3, g: 0.0 }),
             vec![Dark],
         ),
         row("α' = 0.1, 0.5, 0.9", Scene::ball(white([0.1, 0.5, 0.9], 1.3)), vec![Rising]).excess(SEAMS),

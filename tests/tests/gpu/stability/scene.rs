@@ -34,7 +34,8 @@ pub fn sun() -> Light {
 }
 
 /// Three channels about a mean free path of 1 mm that absorb a thirtieth, a fifth and a third of it.
-pub const USUAL: Medium = Medium { sigma_s_prime: [1.0, 0.9, 0.8], sigma_a: [0.03, 0.2, 0.4], ior: 1.3 };
+pub const USUAL: Medium =
+    Medium { sigma_s_prime: [1.0, 0.9, 0.8], sigma_a: [0.03, 0.2, 0.4], ior: 1.3, g: 0.0 };
 
 /// Texels across the atlas of the plane.
 pub const CELLS: u32 = 32;

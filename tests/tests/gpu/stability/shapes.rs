@@ -53,7 +53,7 @@ pub fn rows() -> Vec<Row> {
     let thick = Medium { ior: 1.0, ..scaled(USUAL, 0.5) };
     let slab = |mm: f32| Scene::sheets(thick, mm, false);
     // A texel, and absorbing: from the middle the edges are out of sight.
-    let short = Medium { sigma_s_prime: [0.8, 0.7, 0.5], sigma_a: [0.2, 0.3, 0.5], ior: 1.0 };
+    let short = Medium { sigma_s_prime: [0.8, 0.7, 0.5], sigma_a: [0.2, 0.3, 0.5], ior: 1.0, g: 0.0 };
     let middle = 0.2 * f64::from(SHEET);
     let like = |words, factor| Like(words, Box::new(resized(factor)), 1e-3);
     let small = |lights: &[Light]| {

@@ -263,7 +263,7 @@ fn totals(profile: &Profile, medium: &Medium) -> [f64; 3] {
         let [scattering, absorption] = [medium.sigma_s_prime[k], medium.sigma_a[k]];
         scattering / (scattering + absorption)
     });
-    let medium = &Medium { sigma_s_prime: albedo, sigma_a: albedo.map(|a| 1.0 - a), ior: medium.ior };
+    let medium = &Medium { sigma_s_prime: albedo, sigma_a: albedo.map(|a| 1.0 - a), ior: medium.ior, g: 0.0 };
     let key = format!("{profile:?} {medium:?}");
     let known = KNOWN.get_or_init(Known::default);
     if let Some(totals) = known.lock().unwrap().get(&key) {

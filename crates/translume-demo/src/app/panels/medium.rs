@@ -30,6 +30,7 @@ pub fn show(app: &mut App, ui: &mut egui::Ui) {
     ui.label("absorption, 1/mm");
     coefficients(ui, &mut edited.sigma_a);
     ui.add(Slider::new(&mut edited.ior, 1.0..=2.0).text("index of refraction"));
+    ui.add(Slider::new(&mut edited.g, -0.95..=0.95).text("goes straight on, g"));
     if edited != medium {
         edit(app, |medium| *medium = edited);
     }
@@ -39,8 +40,7 @@ pub fn show(app: &mut App, ui: &mut egui::Ui) {
 pub fn edit(app: &mut App, change: impl FnOnce(&mut Medium)) {
     let mut medium = app.scene.medium().ok().flatten().unwrap_or_default();
     change(&mut medium);
-    let Medium { sigma_s_prime, sigma_a, ior } = medium;
-    let g = app.scene.material.map_or(0.0, |material| material.g);
+    let Medium { sigma_s_prime, sigma_a, ior, g } = medium;
     app.scene.medium = None;
     app.scene.material = Some(Material { sigma_s_prime, sigma_a, g, eta: ior });
 }
