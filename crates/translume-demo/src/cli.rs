@@ -98,6 +98,9 @@ pub struct Render {
     /// Even out charts until every texel holds about the same area of the surface.
     #[arg(long)]
     pub even: bool,
+    /// Finer texels where the body is thinner than this, for what shines through; six mean free paths of light serve, which is 3 to 9 mm in skin, milk or jade.
+    #[arg(long, value_name = "MM")]
+    pub finer_below: Option<f32>,
     /// How light goes through the body: auto (the default: layers where light crosses the body, classic where it stays at the surface or a profile or
     /// method is asked for), classic (as if the body were a half-space around every texel), boundary (diffusion with the boundary that the body has, for
     /// thin parts and light from behind), or layers (the same, and light leaves as the field under the surface says).

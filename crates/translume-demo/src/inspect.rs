@@ -42,7 +42,7 @@ impl Inspected {
     fn new(name: &str, arguments: &Inspect) -> Result<Self, Error> {
         let model = model::open(name)?;
         let build = |equiareal| {
-            let options = arguments.layout.quality(equiareal).atlas()?;
+            let options = arguments.layout.quality(equiareal).atlas(1.0)?;
             Ok::<_, Error>(model::unwrap(&model.mesh, &options)?.report)
         };
         let (flattened, even) = (build(false)?, build(true)?);

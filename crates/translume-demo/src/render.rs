@@ -30,9 +30,9 @@ pub fn run(arguments: &Render) -> Result<(), Error> {
     let directory = path.parent().unwrap_or(Path::new(""));
     let mut substance = Substance::new(&scene, directory).map_err(blame)?;
     let gloss = scene.look.gloss().map_err(blame)?;
-    let options = scene.quality.atlas().map_err(blame)?;
+    scene.quality.atlas(1.0).map_err(blame)?;
     let gpu = Gpu::new()?;
-    check_atlas(options.size, &gpu).map_err(blame)?;
+    check_atlas(scene.quality.atlas, &gpu).map_err(blame)?;
     let opened = progress::during("load", |watch| Opened::new(&scene, &path, watch))?;
     let mesh = &opened.model.mesh;
     if arguments.scene.is_none() && arguments.mm_per_unit.is_none() {
@@ -46,7 +46,7 @@ pub fn run(arguments: &Render) -> Result<(), Error> {
     let albedo = scene.albedo.as_ref().map(|file| Albedo::open(file, mesh)).transpose()?;
     let lights = opened.lights(&scene, &subject, arguments.view)?;
     let start = Instant::now();
-    let atlas = model::unwrap(mesh, &options)?;
+    let atlas = model::unwrap(mesh, &scene.quality.atlas(substance.mm_per_unit).map_err(blame)?)?;
     let unwrapped = start.elapsed().as_secs_f32();
 
     let descriptor = substance.descriptor(mesh, &atlas, opened.flat_normals);
@@ -144,6 +144,7 @@ fn overrule(scene: &mut Scene, arguments: &Render) -> Result<(), Error> {
     let quality = &mut scene.quality;
     arguments.layout.put(quality);
     quality.even |= arguments.even;
+    put(&mut quality.finer_below, arguments.finer_below.map(Some));
     // The command line's files are not the scene's.
     let profile = |name: &String| std::path::absolute(name).ok().filter(|_| name.ends_with(".json"));
     let profile = |name: &String| profile(name).map_or(name.clone(), |path| path.display().to_string());

@@ -35,6 +35,7 @@ pub struct LayoutKey {
     size: u32,
     charts: String,
     even: bool,
+    finer_below: Option<f32>,
 }
 
 impl MeshKey {
@@ -46,7 +47,12 @@ impl MeshKey {
 impl LayoutKey {
     pub fn of(scene: &Scene) -> Self {
         let quality = &scene.quality;
-        Self { size: quality.atlas, charts: quality.charts.clone(), even: quality.even }
+        Self {
+            size: quality.atlas,
+            charts: quality.charts.clone(),
+            even: quality.even,
+            finer_below: quality.finer_below.map(|mm| mm / scene.mm_per_unit()),
+        }
     }
 }
 
@@ -112,7 +118,6 @@ fn open(
     id: u64,
     watch: Watch<'_>,
 ) -> Result<(Scene, Arc<Loaded>), Error> {
-    let options = scene.quality.atlas()?;
     let opened = match known {
         Some(known) => known,
         None => Arc::new(Opened::new(&scene, Path::new(""), watch)?),
@@ -120,6 +125,7 @@ fn open(
     if assumes_size && scene.mm_per_unit.is_none() {
         scene.mm_per_unit = Some(ASSUMED_DIAGONAL_MM / opened.model.diagonal()?);
     }
+    let options = scene.quality.atlas(scene.mm_per_unit())?;
     let subject = opened.subject(&scene)?;
     scene.camera = Some(camera(&scene, &subject, VIEW));
     scene.lights.get_or_insert_with(|| subject.lamps(VIEW));

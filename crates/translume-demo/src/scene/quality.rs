@@ -31,6 +31,9 @@ pub struct Quality {
     pub charts: String,
     /// Whether charts are evened out.
     pub even: bool,
+    /// Thickness below which texels are finer, mm.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub finer_below: Option<f32>,
     /// Width of a shadow map in texels.
     pub shadow: u32,
     /// Directions in which the body's shadow on the sky is known.
@@ -49,6 +52,7 @@ impl Default for Quality {
             atlas: 512,
             charts: "unwrap".to_owned(),
             even: false,
+            finer_below: None,
             shadow: 2048,
             directions: 256,
         }
@@ -138,7 +142,8 @@ impl Quality {
         }
     }
 
-    pub fn atlas(&self) -> Result<AtlasOptions, Error> {
+    /// For a model of so many millimetres a unit.
+    pub fn atlas(&self, mm_per_unit: f32) -> Result<AtlasOptions, Error> {
         let charts = match self.charts.as_str() {
             "unwrap" => ChartSource::Unwrap,
             "own" => ChartSource::Own,
@@ -149,7 +154,17 @@ impl Quality {
                 return Err(Error::Option { option: "--charts", problem });
             }
         };
-        Ok(AtlasOptions { size: self.atlas, charts, equiareal: self.even, ..Default::default() })
+        if let Some(below) = self.finer_below.filter(|below| !(*below > 0.0 && below.is_finite())) {
+            let problem = format!("{below} mm is no thickness; give one above 0");
+            return Err(Error::Option { option: "--finer-below", problem });
+        }
+        Ok(AtlasOptions {
+            size: self.atlas,
+            charts,
+            equiareal: self.even,
+            finer_below: self.finer_below.map(|mm| mm / mm_per_unit),
+            ..Default::default()
+        })
     }
 
     pub fn shadows(&self) -> ShadowOptions {

@@ -16,6 +16,8 @@ mod raster;
 mod relax;
 mod texels;
 #[cfg(feature = "unwrap")]
+mod thin;
+#[cfg(feature = "unwrap")]
 mod unwrap;
 
 #[cfg(feature = "unwrap")]
@@ -133,6 +135,12 @@ pub enum AtlasError {
         padding: u32,
         /// The requested size.
         size: u32,
+    },
+    /// A thickness that nothing has.
+    #[error("texels cannot be finer below a thickness of {below}; give one that is finite and above 0")]
+    FinerBelow {
+        /// The thickness that was asked for.
+        below: f32,
     },
     /// The file's own texture coordinates are not fit for light.
     #[error("{mesh}: its texture coordinates are not fit for light: {reason}; unwrap it instead")]

@@ -1,6 +1,6 @@
 //! Charts and packing by `uvunwrap`.
 
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 use std::sync::{Mutex, PoisonError};
 
 use glam::DVec2;
@@ -10,7 +10,7 @@ use uvunwrap::{Density, Error, MeshInput, Options, Packing, Stage};
 use super::layout::{Layout, area, check_mesh, check_size, connected_charts};
 use super::raster::signed_area;
 use super::relax::Chart;
-use super::{Atlas, AtlasError, AtlasVertex, own};
+use super::{Atlas, AtlasError, AtlasVertex, own, thin};
 use crate::mesh::Mesh;
 use crate::progress::{Progress, Stopwatch};
 use crate::weld::weld;
@@ -19,7 +19,7 @@ use crate::weld::weld;
 const DRAFT_PAGE: u32 = 1024;
 
 /// What an atlas shall be like.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct AtlasOptions {
     /// Width and height in texels, [`Atlas::MIN_SIZE`] to [`Atlas::MAX_SIZE`].
     pub size: u32,
@@ -32,6 +32,10 @@ pub struct AtlasOptions {
     /// measures the area of every texel, and its error is the same either way (docs/accuracy.md). For schemes that take
     /// texels to be equal.
     pub equiareal: bool,
+    /// Thickness below which unwrapped charts are given finer texels, in units of the mesh, above 0: light that crosses a thin part
+    /// shows what it is like, so six mean free paths serve. A texel's area goes with the thickness, down to a sixth. `None`, as if nothing
+    /// is said, gives all the same. It is the mesh at rest that is measured.
+    pub finer_below: Option<f32>,
 }
 
 /// Where charts come from.
@@ -49,7 +53,7 @@ pub enum ChartSource {
 
 impl Default for AtlasOptions {
     fn default() -> Self {
-        Self { size: 256, padding: 2, charts: ChartSource::Unwrap, equiareal: false }
+        Self { size: 256, padding: 2, charts: ChartSource::Unwrap, equiareal: false, finer_below: None }
     }
 }
 
@@ -61,7 +65,7 @@ impl Atlas {
     /// [`AtlasError::Cancelled`].
     ///
     /// # Errors
-    /// [`AtlasError::Size`] and [`AtlasError::Padding`] for options out of range, [`AtlasError::DoesNotFit`],
+    /// [`AtlasError::Size`], [`AtlasError::Padding`] and [`AtlasError::FinerBelow`] for options out of range, [`AtlasError::DoesNotFit`],
     /// [`AtlasError::OwnUvs`] where the file's texture coordinates are asked for and not fit, [`AtlasError::Empty`],
     /// [`AtlasError::Unwrap`] for a mesh that is not clean, [`AtlasError::Cancelled`].
     pub fn build(
@@ -72,6 +76,9 @@ impl Atlas {
         check_size(options.size)?;
         if options.padding.saturating_mul(2) >= options.size {
             return Err(AtlasError::Padding { padding: options.padding, size: options.size });
+        }
+        if let Some(below) = options.finer_below.filter(|below| !(*below > 0.0 && below.is_finite())) {
+            return Err(AtlasError::FinerBelow { below });
         }
         check_mesh(mesh)?;
         let start = Stopwatch::start();
@@ -96,27 +103,40 @@ fn unwrap(
     options: &AtlasOptions,
     progress: &(impl Fn(Progress) -> bool + Sync),
 ) -> Result<Layout, AtlasError> {
-    if !options.equiareal {
+    if !options.equiareal && options.finer_below.is_none() {
         let whole = MeshInput::new(&mesh.positions, mesh.triangles.as_flattened());
-        return pack(mesh, whole, options, |p| progress(told(p, stage_name(p.stage))));
+        return pack(mesh, &[whole], options, |p| progress(told(p, stage_name(p.stage))));
     }
     let draft = Draft::new(mesh, options, progress)?;
-    let uvs = draft.evened_out(mesh, progress)?;
+    let areas = draft.wanted(mesh, options);
+    let uvs = draft.evened_out(mesh, &areas, progress)?;
     let positions: Vec<_> = draft.xrefs.iter().map(|&v| mesh.positions[v as usize]).collect();
-    let charts =
-        MeshInput { existing_uvs: Some(&uvs), ..MeshInput::new(&positions, draft.triangles.as_flattened()) };
-    let mut layout = pack(mesh, charts, options, |p| match p.stage {
+    // The packer gives a mesh as many texels as its scale says.
+    let parts = draft.parts(mesh, &areas);
+    let charts: Vec<MeshInput<'_>> = parts
+        .iter()
+        .map(|part| MeshInput {
+            existing_uvs: Some(&uvs),
+            scale: part.scale,
+            ..MeshInput::new(&positions, part.corners.as_flattened())
+        })
+        .collect();
+    let mut layout = pack(mesh, &charts, options, |p| match p.stage {
         Stage::Segmenting | Stage::Parameterizing => progress(in_between()),
         _ => progress(told(p, stage_name(p.stage))),
     })?;
     layout.vertices.iter_mut().for_each(|v| v.xref = draft.xrefs[v.xref as usize]);
+    let order = parts.iter().flat_map(|part| &part.triangles);
+    let mut triangles = layout.triangles.clone();
+    order.zip(&layout.triangles).for_each(|(&t, corners)| triangles[t as usize] = *corners);
+    layout.triangles = triangles;
     Ok(layout)
 }
 
-/// Packs charts into one page, cutting and flattening first where there are none yet.
+/// Packs charts into one page, cutting and flattening first where there are none yet. Triangles are those of one part after the other.
 fn pack(
     mesh: &Mesh,
-    input: MeshInput<'_>,
+    parts: &[MeshInput<'_>],
     options: &AtlasOptions,
     progress: impl Fn(uvunwrap::Progress) -> bool + Sync,
 ) -> Result<Layout, AtlasError> {
@@ -125,7 +145,7 @@ fn pack(
         padding: options.padding,
         ..Options::default()
     };
-    let unwrapped = uvunwrap::generate_with_progress(&[input], &packing, progress)
+    let unwrapped = uvunwrap::generate_with_progress(parts, &packing, progress)
         .map_err(|error| refusal(mesh, options.size, &error))?;
     if unwrapped.page_count > 1 {
         return Err(AtlasError::DoesNotFit {
@@ -136,15 +156,21 @@ fn pack(
     }
     // The page is cropped to what is used; ours is the whole square.
     let used = [unwrapped.width, unwrapped.height].map(|extent| extent as f32 / options.size as f32);
-    let output = &unwrapped.meshes[0];
+    let mut vertices = Vec::new();
+    let mut triangles = Vec::new();
+    for part in &unwrapped.meshes {
+        let first = vertices.len() as u32;
+        triangles.extend(part.indices.as_chunks().0.iter().map(|t: &[u32; 3]| t.map(|v| first + v)));
+        let placed = |v: &uvunwrap::OutputVertex| AtlasVertex {
+            xref: v.xref,
+            uv: [v.uv[0] * used[0], v.uv[1] * used[1]],
+        };
+        vertices.extend(part.vertices.iter().map(placed));
+    }
     Ok(Layout {
         size: options.size,
-        vertices: output
-            .vertices
-            .iter()
-            .map(|v| AtlasVertex { xref: v.xref, uv: [v.uv[0] * used[0], v.uv[1] * used[1]] })
-            .collect(),
-        triangles: output.indices.as_chunks().0.to_vec(),
+        vertices,
+        triangles,
         gutter: options.padding + 2,
         chart_count: Some(unwrapped.chart_count as usize),
     })
@@ -193,13 +219,25 @@ impl Draft {
         })
     }
 
-    /// Where each point goes once areas are even.
+    /// How much of the texture each triangle shall have, in any unit.
+    fn wanted(&self, mesh: &Mesh, options: &AtlasOptions) -> Vec<f64> {
+        let areas = (0..mesh.triangles.len()).map(|t| area(mesh, t));
+        match options.finer_below {
+            Some(below) => {
+                areas.zip(thin::weights(mesh, below)).map(|(area, weight)| weight * area).collect()
+            }
+            None => areas.collect(),
+        }
+    }
+
+    /// Where each point goes once charts hold that.
     fn evened_out(
         &self,
         mesh: &Mesh,
+        areas: &[f64],
         progress: &(impl Fn(Progress) -> bool + Sync),
     ) -> Result<Vec<[f32; 2]>, AtlasError> {
-        let mut charts = self.charts(mesh);
+        let mut charts = self.charts(areas);
         // The largest first, so that no thread is left alone with it.
         charts.sort_by_key(|(_, chart)| std::cmp::Reverse(chart.triangles.len()));
         let total = Some(charts.len());
@@ -221,14 +259,13 @@ impl Draft {
     }
 
     /// The charts, each with the numbers of its points; triangles without an area in UV or in space belong to none.
-    fn charts(&self, mesh: &Mesh) -> Vec<(Vec<u32>, Chart)> {
-        let triangles: Vec<_> = self.triangles.iter().map(|t| t.map(|v| self.welded[v as usize])).collect();
-        let names = connected_charts(self.points.len(), &triangles).0;
+    fn charts(&self, areas: &[f64]) -> Vec<(Vec<u32>, Chart)> {
+        let (triangles, names) = self.named();
         let mut charts: Vec<(Vec<u32>, Chart)> = Vec::new();
         let mut numbers = HashMap::new();
         let mut places = vec![u32::MAX; self.points.len()];
         for (t, triangle) in triangles.iter().enumerate() {
-            let surface = area(mesh, t);
+            let surface = areas[t];
             if signed_area(&triangle.map(|v| self.points[v as usize])) <= 0.0 || surface <= 0.0 {
                 continue;
             }
@@ -250,6 +287,49 @@ impl Draft {
         }
         charts
     }
+}
+
+impl Draft {
+    /// Triangles over points of which there is one at each place, and the name of the chart of each.
+    fn named(&self) -> (Vec<[u32; 3]>, Vec<u32>) {
+        let triangles: Vec<_> = self.triangles.iter().map(|t| t.map(|v| self.welded[v as usize])).collect();
+        let names = connected_charts(self.points.len(), &triangles).0;
+        (triangles, names)
+    }
+
+    /// What is packed at one scale: charts whose triangles want as much for their surface, within a few per cent.
+    fn parts(&self, mesh: &Mesh, areas: &[f64]) -> Vec<Part> {
+        const STEPS: f64 = 16.0;
+        let names = self.named().1;
+        let mut sums: HashMap<u32, [f64; 2]> = HashMap::new();
+        for (t, name) in names.iter().enumerate() {
+            let [wanted, surface] = sums.entry(*name).or_default();
+            *wanted += areas[t];
+            *surface += area(mesh, t);
+        }
+        let mut parts: BTreeMap<i32, Part> = BTreeMap::new();
+        for (t, name) in names.iter().enumerate() {
+            let [wanted, surface] = sums[name];
+            let step = if surface > 0.0 { (STEPS * (wanted / surface).log2()).round() } else { 0.0 };
+            let part = parts.entry(step as i32).or_insert_with(|| Part {
+                scale: (0.5 * step / STEPS).exp2() as f32,
+                triangles: Vec::new(),
+                corners: Vec::new(),
+            });
+            part.triangles.push(t as u32);
+            part.corners.push(self.triangles[t]);
+        }
+        parts.into_values().collect()
+    }
+}
+
+/// Charts that are packed at one scale.
+struct Part {
+    scale: f32,
+    /// Of the mesh.
+    triangles: Vec<u32>,
+    /// Points of each.
+    corners: Vec<[u32; 3]>,
 }
 
 fn told(p: uvunwrap::Progress, stage: &'static str) -> Progress {

@@ -1,6 +1,7 @@
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use translume_mesh::{Atlas, AtlasError, AtlasOptions, ChartSource, Mesh, Progress};
+use translume_mesh::builtin::cuboid;
+use translume_mesh::{Atlas, AtlasError, AtlasOptions, ChartSource, Mesh, Progress, Texel};
 
 use crate::atlas::area_error;
 use crate::fixtures::{clean, cube, sphere, tetrahedron};
@@ -123,6 +124,39 @@ fn evening_out_makes_texels_equal_and_costs_no_chart() {
         assert!(after.utilisation > before.utilisation - 0.03, "{before:?} {after:?}");
     }
     assert!(build(&clean(sphere(3)), 128).report.area_cv > 0.01, "or there is nothing to show");
+}
+
+/// A block with a sheet beside it, and how many times finer texels of the sheet are.
+fn finer_on_a_sheet(finer_below: Option<f32>, size: u32) -> f64 {
+    let mut mesh = cuboid([0.0; 3], [40.0; 3], [8; 3]);
+    let sheet = cuboid([60.0, 0.0, 0.0], [100.0, 2.0, 40.0], [20, 1, 20]);
+    let (base, block) = (mesh.positions.len() as u32, mesh.triangles.len());
+    mesh.positions.extend(sheet.positions);
+    mesh.normals.extend(sheet.normals);
+    mesh.triangles.extend(sheet.triangles.iter().map(|t| t.map(|v| v + base)));
+    let mesh = clean(Mesh { positions: mesh.positions, triangles: mesh.triangles, ..Mesh::default() });
+    let options = AtlasOptions { size, finer_below, ..Default::default() };
+    let atlas = Atlas::build(&mesh, &options, |_| true).unwrap();
+    assert!(area_error(&atlas, &mesh) < 1e-5);
+    assert_eq!((atlas.report.flipped, atlas.report.overlapping_texels), (0, 0));
+    let beside = |sheet: bool| move |t: &&Texel| (t.triangle as usize >= block) == sheet;
+    let density = |sheet: bool, area: f64| atlas.texels.iter().filter(beside(sheet)).count() as f64 / area;
+    density(true, 2.0 * 1600.0 + 4.0 * 80.0) / density(false, 6.0 * 1600.0)
+}
+
+/// A quarter of the thickness: four times as many texels, and a little less at the sheet's rim, which is not thin.
+#[test]
+fn texels_are_finer_where_it_is_thin() {
+    let finer = finer_on_a_sheet(Some(8.0), 256);
+    assert!((3.3..4.3).contains(&finer), "{finer}");
+    let same = finer_on_a_sheet(None, 256);
+    assert!((0.9..1.1).contains(&same), "{same}");
+    let mesh = clean(cube());
+    for below in [0.0, -1.0, f32::NAN, f32::INFINITY] {
+        let options = AtlasOptions { finer_below: Some(below), ..Default::default() };
+        let error = Atlas::build(&mesh, &options, |_| true).unwrap_err();
+        assert!(matches!(error, AtlasError::FinerBelow { .. }), "{error}");
+    }
 }
 
 /// A sphere with the texture coordinates of an unwrapping, as an artist might have stored them.

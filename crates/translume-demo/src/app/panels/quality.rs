@@ -7,6 +7,8 @@ use eframe::egui;
 use egui::Slider;
 use translume::{Evaluate, Profile, Transport};
 
+/// Six mean free paths of light in milk or skin.
+const FINER_BELOW: f32 = 5.0;
 const SIZES: [u32; 6] = [64, 128, 256, 512, 1024, 2048];
 
 pub fn show(app: &mut App, ui: &mut egui::Ui) {
@@ -22,10 +24,22 @@ pub fn show(app: &mut App, ui: &mut egui::Ui) {
     number(ui, "texels across the atlas", &mut quality.atlas, &SIZES);
     choice(ui, "charts", &mut quality.charts, Quality::CHARTS);
     ui.checkbox(&mut quality.even, "charts hold equal areas");
+    finer(ui, &mut quality.finer_below);
     number(ui, "texels across a shadow map", &mut quality.shadow, &SIZES[2..]);
     number(ui, "directions of the sky's shadow", &mut quality.directions, &[8, 16, 32, 64, 128, 256]);
     if scene != app.scene {
         app.set(scene);
+    }
+}
+
+/// Texels of thin parts.
+fn finer(ui: &mut egui::Ui, below: &mut Option<f32>) {
+    let mut is_on = below.is_some();
+    if ui.checkbox(&mut is_on, "finer texels where it is thin").changed() {
+        *below = is_on.then_some(FINER_BELOW);
+    }
+    if let Some(mm) = below {
+        ui.add(Slider::new(mm, 0.5..=50.0).logarithmic(true).text("thinner than, mm"));
     }
 }
 
