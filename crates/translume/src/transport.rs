@@ -74,7 +74,7 @@ const FEWEST_SITES: u32 = 4096;
 /// More of them take longer than a frame has.
 const MOST_SITES: u32 = 20_000;
 /// 256 texels.
-const COARSEST_LEVEL: u32 = 4;
+pub(crate) const COARSEST_LEVEL: u32 = 4;
 
 /// Of the texels' tree, that whose nodes are the sites; `texel` is the width of one, mm.
 pub(crate) fn site_level(medium: &Medium, texels: u32, texel: f32, is_hasty: bool) -> u32 {

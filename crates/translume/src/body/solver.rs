@@ -136,10 +136,9 @@ impl Body {
 
     fn sites(&self, texel: f32) -> Sites {
         let is_hasty = self.solver.asked == Transport::Auto;
-        Sites::new(
-            self.extent.texels,
-            transport::site_level(&self.medium, self.extent.texels, texel, is_hasty),
-        )
+        let texels = self.extent.texels;
+        let wanted = transport::site_level(&self.medium, texels, texel, is_hasty);
+        Sites::new(texels, wanted.max(stage::finest(texels, transport::COARSEST_LEVEL, &self.limits)))
     }
 
     /// Bytes that a solver takes beyond what there is.
@@ -230,5 +229,5 @@ pub(super) fn check_transport(
         });
     }
     // Sites are texels at worst.
-    stage::check(&Sites::new(texels, 0), limits)
+    stage::check(&Sites::new(texels, transport::COARSEST_LEVEL), limits)
 }

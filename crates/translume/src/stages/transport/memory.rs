@@ -22,7 +22,7 @@ const DIRECTIONS: u64 = StateLayout::DIRECTIONS as u64;
 /// Of pairs of them, of each with a target, and two more.
 const PRODUCTS: u64 = DIRECTIONS * (DIRECTIONS + 1) / 2 + DIRECTIONS + 2;
 /// `Angle::Wide` over `Angle::Narrow`, and no wider than this: beyond, expansions say little.
-const WIDER: f32 = 1.5;
+const WIDER: f32 = 2.3;
 const WIDEST: f32 = 0.9;
 
 pub(crate) struct TransportMemory {
@@ -389,6 +389,11 @@ pub(crate) fn bytes(sites: &Sites) -> u64 {
     let tree = bounds + nodes + shapes + charges + strata;
     let levels = UNIFORM_STRIDE * u64::from(sites.tree.top_level());
     tree + levels + leaving + directions + partial + parabolas + lights + surroundings + 12 * vectors
+}
+
+/// The finest level of so many texels of whose sites a binding holds all, no coarser than this.
+pub(crate) fn finest(texels: u32, coarsest: u32, limits: &wgpu::Limits) -> u32 {
+    (0..coarsest).find(|level| check(&Sites::new(texels, *level), limits).is_ok()).unwrap_or(coarsest)
 }
 
 /// Whether a binding holds the largest of it.

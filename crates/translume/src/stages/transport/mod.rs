@@ -23,7 +23,7 @@ mod sites;
 
 use crate::gpu::{self, Pass, READ, UNIFORM, UNIFORM_ARRAY, UNIFORM_STRIDE, WRITE};
 use crate::stages::cluster::Tree;
-pub(crate) use memory::{Inputs, TransportMemory, bytes, check};
+pub(crate) use memory::{Inputs, TransportMemory, bytes, check, finest};
 pub(crate) use sites::Sites;
 use wgpu::ComputePipeline;
 
@@ -207,10 +207,16 @@ impl TransportStage {
             frame.apply(pass, 1, Angle::Narrow);
             frame.each(pass, &krylov.adopt, &memory.krylov);
             frame.minimise(pass);
-            // A direction may be roughly what it is, if the next frame finds out what the equation makes of the solution.
-            let (returns, angle) =
-                if steps.tries > WARM { (RETURNS, Angle::Narrow) } else { (1, Angle::Wide) };
-            for _ in 0..steps.tries {
+            // A direction may be roughly what it is, and one of two without what it makes come in again, if the next frame finds out what the equation makes of
+            // the solution.
+            let is_first = steps.tries > WARM;
+            let angle = if is_first { Angle::Narrow } else { Angle::Wide };
+            for index in 0..steps.tries {
+                let returns = match index {
+                    _ if is_first => RETURNS,
+                    0 => 1,
+                    _ => 0,
+                };
                 frame.apply(pass, returns, angle);
                 frame.each(pass, &krylov.take, &memory.krylov);
                 frame.groups(pass, &krylov.project_direction);
