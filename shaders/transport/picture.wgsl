@@ -19,6 +19,9 @@ const MOST_OF_RAY: f32 = 0.35;
 const ALONG: vec2f = vec2f(0.6, 1.6);
 // No further than this share of it.
 const MOST_ALONG: f32 = 0.5;
+// How much more light there may be a mean free path further in: a ray that looks through a gap at a lit site is no speck of light. Under a plane that is lit
+// from afar it is .7 of what there is at one.
+const MOST_GROWTH: f32 = 2.5;
 // Steps along a ray of view.
 const STEPS: u32 = 10u;
 // Surfaces that bend more, in mean free paths, count as those.
@@ -141,7 +144,8 @@ fn many(sight: Sight) -> vec3f {
             let far = deep_at(depth_along(other.thickness, sight.there, chord - s, chord));
             let from_other = beam_at(other, far);
             let way = (s - begin) / (end - begin);
-            let inside = before * rising(1.0 - way, length) + behind * rising(way, length) - from_own - from_other;
+            let risen = before * rising(1.0 - way, length) + behind * rising(way, length);
+            let inside = min(risen, before * (1.0 + MOST_GROWTH * extinction * (s - begin))) - from_own - from_other;
             let back = fluence_at(other, far) - from_other;
             value = select(select(inside, back, s >= end), value, s <= begin);
         } else {

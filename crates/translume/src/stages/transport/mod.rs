@@ -13,7 +13,7 @@
 //! | `transport/returning.wgsl` | light that enters again | `equation` |
 //! | `transport/krylov.wgsl` | the next try | `krylov` |
 //! | `transport/layer.wgsl` | exitance by the diffuse law, φ under the surface | `layer` |
-//! | `transport/picture.wgsl` | radiance towards the eye, once scattered light | `picture`, `single` |
+//! | `transport/picture.wgsl` | radiance towards the eye, once scattered light, beams that spread | `picture`, `single`, `phase` |
 //! | `transport/twice.wgsl` | twice scattered light | `twice` |
 //! | `transport/near.wgsl` | the sites around each | |
 //! | `transport/smooth.wgsl`, `transport/strangers.wgsl` | exitance of texels from that of the sites around | |
