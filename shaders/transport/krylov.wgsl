@@ -16,6 +16,9 @@ const ALONE: f32 = 0.15;
 // What leaves so much more than is given, squared, is no approximation.
 const HOPELESS: f32 = 1e8;
 
+// Share of what is given that is left, squared, above which directions of former frames are given up: of a body that is another by then they say what is not so.
+override STALE: f32 = 1e30;
+
 struct State {
     // Mean of what is given, and the area.
     mean: vec4f,
@@ -237,6 +240,12 @@ fn weigh_residual(@builtin(local_invocation_index) local: u32) {
     state.residual = sqrt(left);
     // Not `>`: that lets NaN pass.
     let before = totals[PAIRS + DIRECTIONS] / max(totals[PRODUCTS - 1u], vec4f(1e-30));
+    if max(before.x, max(before.y, before.z)) > STALE {
+        for (var k = 0u; k < DIRECTIONS; k++) { state.weights[k] = vec4f(0.0); }
+        state.next = 0u;
+        state.count = 0u;
+        state.residual = sqrt(before);
+    }
     let failed = !(before.x < HOPELESS && before.y < HOPELESS && before.z < HOPELESS);
     state.failed = select(0u, 1u, failed);
     state.failures += state.failed;

@@ -333,8 +333,8 @@ pub struct Outputs<'a> {
     pub exitance: &'a wgpu::Buffer,
     /// With [`Evaluate::PerVertex`](crate::Evaluate::PerVertex): radiant exitance B of each vertex, RGB, and kernel evaluations.
     pub vertex_exitance: Option<&'a wgpu::Buffer>,
-    /// With [`Transport::Boundary`](crate::Transport::Boundary) and beyond: where the solver is, in words of four bytes. From the 24th on, counted
-    /// from 0, the share of the light that is not explained yet, RGB, as floats; the 31st is how often it found nothing, so that the last good solution stayed.
+    /// With [`Transport::Boundary`](crate::Transport::Boundary) and beyond: where the solver is, in words of four bytes. From the 32nd on, counted
+    /// from 0, the share of the light that is not explained yet, RGB, as floats; the 39th is how often it found nothing, so that the last good solution stayed.
     pub solver: Option<&'a wgpu::Buffer>,
     /// Once [`Method::Dual`](crate::Method::Dual) was used: its lists of open sources. The first word is how many words they
     /// would have filled, the second how many groups of receivers found no room. Those do not err, but take longer: their texels

@@ -32,10 +32,31 @@ pub(crate) fn spread(g: f64, depth: f64, cosine: f64) -> f64 {
 }
 
 /// [`spread`] with the cosine in columns, finer where there is more of it: the cube of a step's share goes with the depth, and with 1 − cosine.
-pub(crate) fn table(g: f32) -> [[f32; 4]; STEPS * STEPS / 4] {
-    if g == 0.0 {
-        return [[0.0; 4]; STEPS * STEPS / 4];
+pub(crate) type Table = [[f32; 4]; STEPS * STEPS / 4];
+
+/// The table of the last medium: it takes some 10⁵ exponentials.
+pub(crate) struct LastTable {
+    g: f32,
+    table: Table,
+}
+
+impl Default for LastTable {
+    /// Of even scattering.
+    fn default() -> Self {
+        Self { g: 0.0, table: [[0.0; 4]; STEPS * STEPS / 4] }
     }
+}
+
+impl LastTable {
+    pub fn table(&mut self, g: f32) -> &Table {
+        if g != self.g {
+            *self = Self { g, table: table(g) };
+        }
+        &self.table
+    }
+}
+
+fn table(g: f32) -> Table {
     let share = |step: usize| (step as f64 / (STEPS - 1) as f64).powi(3);
     let at = |index: usize| {
         spread(g.into(), DEEPEST * share(index / STEPS), 1.0 - 2.0 * share(index % STEPS)) as f32
@@ -66,6 +87,10 @@ mod tests {
             }
         }
         assert!(spread(0.0, 1.0, 0.5).abs() < 1e-12, "scattering evenly is what it is held against");
+        let mut last = LastTable::default();
+        assert_eq!(*last.table(0.0), [[0.0; 4]; 64]);
+        assert_eq!(*last.table(0.5), table(0.5));
+        assert_ne!(*last.table(0.6), table(0.5));
     }
 
     /// As the shader looks it up: measured within 1 % but for 5 and 9 % right beside a beam of g = .8 and .9 that has hardly been turned.

@@ -98,7 +98,12 @@ fn width_in_paths(medium: &Medium, texel: f32, level: u32) -> f32 {
 }
 
 /// What the shaders need to know of a medium and of the sites of a body; `texel` is the width of one, mm.
-pub(crate) fn layout(medium: &Medium, sites: &Sites, groups: u32, texel: f32) -> TransportLayout {
+pub(crate) fn layout(
+    (medium, spread): (&Medium, &phase::Table),
+    sites: &Sites,
+    groups: u32,
+    texel: f32,
+) -> TransportLayout {
     let tree = &sites.tree;
     let site = texel * (1 << sites.level) as f32;
     let eta = f64::from(medium.ior);
@@ -143,7 +148,7 @@ pub(crate) fn layout(medium: &Medium, sites: &Sites, groups: u32, texel: f32) ->
         light_bounds: tree.sources() + tree.clusters(),
         offsets: Tree::packed(&tree.offsets),
         sources: Tree::packed(&tree.source_offsets),
-        spread: phase::table(medium.g),
+        spread: *spread,
     }
 }
 

@@ -287,9 +287,7 @@ impl Draft {
         }
         charts
     }
-}
 
-impl Draft {
     /// Triangles over points of which there is one at each place, and the name of the chart of each.
     fn named(&self) -> (Vec<[u32; 3]>, Vec<u32>) {
         let triangles: Vec<_> = self.triangles.iter().map(|t| t.map(|v| self.welded[v as usize])).collect();

@@ -5,10 +5,10 @@ use crate::evaluate::Evaluate;
 use crate::gpu::Pass;
 use crate::stages::scatter::Method;
 use crate::stages::scatter::dual::{Demand, ListSizes, Lists};
-use crate::stages::transport::{self as stage, Inputs, Sites, Steps, TransportMemory, TransportStage};
+use crate::stages::transport::{self as stage, Inputs, Since, Sites, Steps, TransportMemory, TransportStage};
 use crate::stages::{Stage, StageSet, Stages};
 use crate::timings::Recording;
-use crate::{Error, Frame, Medium, Profile, Transport, transport};
+use crate::{Error, Frame, Medium, Profile, Transport, phase, transport};
 use glam::Mat4;
 use std::sync::Arc;
 
@@ -30,6 +30,7 @@ pub(super) struct Solver {
     /// Frames that still solve although nothing changed.
     unsettled: u32,
     steps: Steps,
+    spread: phase::LastTable,
 }
 
 /// What of the solver a frame records.
@@ -43,7 +44,15 @@ impl Solver {
     /// Until a frame is prepared nobody knows how large the body is.
     pub fn new(asked: Transport) -> Self {
         let runs = if asked == Transport::Auto { Transport::Classic } else { asked };
-        Self { asked, runs, memory: None, is_first: true, unsettled: 0, steps: Steps::default() }
+        Self {
+            asked,
+            runs,
+            memory: None,
+            is_first: true,
+            unsettled: 0,
+            steps: Steps::default(),
+            spread: phase::LastTable::default(),
+        }
     }
 
     pub fn bytes(&self) -> u64 {
@@ -167,7 +176,9 @@ impl Body {
         let gathers = self.solver.runs == Transport::BoundaryLayers && self.medium.ior >= 1.0;
         // What goes on straight has no part in a diffuse law.
         let medium = Medium { g: if gathers { self.medium.g } else { 0.0 }, ..self.medium };
-        let layout = transport::layout(&medium, &sites, groups, self.texel_width());
+        let texel = self.texel_width();
+        let spread = self.solver.spread.table(medium.g);
+        let layout = transport::layout((&medium, spread), &sites, groups, texel);
         let solver = &mut self.solver;
         solver.memory =
             solver.memory.take().filter(|memory| memory.serves(demand, sites.level, &self.limits));
@@ -202,6 +213,12 @@ impl Body {
         solver.unsettled = if is_new { SETTLING } else { solver.unsettled.saturating_sub(1) };
         solver.steps = Steps {
             tries: if solves { TransportStage::tries(solver.is_first) } else { solver.steps.tries },
+            since: match solver.steps.since {
+                _ if solver.is_first => Since::Ever,
+                _ if is_new => Since::Moved,
+                Since::Moved => Since::Rested,
+                _ => Since::Stood,
+            },
             seen,
         };
         if solves || looked {

@@ -31,6 +31,9 @@ use wgpu::ComputePipeline;
 const COLD: u32 = 8;
 const WARM: u32 = 2;
 
+/// Share of the light that is not explained by the last solution from which on a body is another.
+const STALE: f32 = 0.3;
+
 /// How often light that leaves a concave body is followed back into it for a direction of the first frame.
 const RETURNS: u32 = 2;
 
@@ -75,6 +78,9 @@ struct Krylov {
     turn: ComputePipeline,
     project_residual: ComputePipeline,
     weigh_residual: ComputePipeline,
+    /// The same for the first time in a frame, where a body moved and where it stands still since.
+    weigh_moved: ComputePipeline,
+    weigh_anew: ComputePipeline,
     advance: ComputePipeline,
     give_up: ComputePipeline,
 }
@@ -94,11 +100,27 @@ struct Layouts {
     smooth: wgpu::BindGroupLayout,
 }
 
+/// What directions of former frames are worth, and how rough those of this one may be.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) enum Since {
+    /// It came to be: there are none.
+    #[default]
+    Ever,
+    /// It moved on, and will.
+    Moved,
+    /// It moved until then: what they say is not quite so.
+    Rested,
+    /// It stood still, too.
+    Stood,
+}
+
 /// What of the light's way a frame does anew.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Steps {
     /// Tries; none where nothing but the eye moved.
     pub tries: u32,
+    /// What the body did since the last frame.
+    pub since: Since,
     /// Whether light is gathered towards an eye.
     pub seen: bool,
 }
@@ -136,6 +158,10 @@ impl TransportStage {
         let returning = module(translume_shaders::RETURNING);
         let krylov = module(translume_shaders::KRYLOV);
         let layer = module(translume_shaders::LAYER);
+        let weigh = |stale| {
+            let constants = [("STALE", stale)];
+            gpu::specialised_pipeline(device, &layouts.krylov, &krylov, "weigh_residual", &constants)
+        };
         let sum = |light: bool, below: bool| {
             let constants = [("LIGHT", light), ("BELOW", below)];
             let constants = constants.map(|(name, on)| (name, f64::from(u8::from(on))));
@@ -172,6 +198,8 @@ impl TransportStage {
                 turn: pipeline(&layouts.krylov, &krylov, "turn"),
                 project_residual: pipeline(&layouts.krylov, &krylov, "project_residual"),
                 weigh_residual: pipeline(&layouts.krylov, &krylov, "weigh_residual"),
+                weigh_moved: weigh(f64::from(STALE * STALE)),
+                weigh_anew: weigh(-1.0),
                 advance: pipeline(&layouts.krylov, &krylov, "advance"),
                 give_up: pipeline(&layouts.krylov, &krylov, "give_up"),
             },
@@ -206,16 +234,22 @@ impl TransportStage {
             frame.each(pass, &krylov.start, &memory.krylov);
             frame.apply(pass, 1, Angle::Narrow);
             frame.each(pass, &krylov.adopt, &memory.krylov);
-            frame.minimise(pass);
-            // A direction may be roughly what it is, and one of two without what it makes come in again, if the next frame finds out what the equation makes of
-            // the solution.
-            let is_first = steps.tries > WARM;
-            let angle = if is_first { Angle::Narrow } else { Angle::Wide };
+            frame.minimise(
+                pass,
+                match steps.since {
+                    Since::Moved => &krylov.weigh_moved,
+                    Since::Rested => &krylov.weigh_anew,
+                    Since::Ever | Since::Stood => &krylov.weigh_residual,
+                },
+            );
+            // Where a body moves a direction may be roughly what it is, and one of two without what it makes come in again: the next frame finds out what the
+            // equation makes of the solution.
+            let angle = if steps.since == Since::Moved { Angle::Wide } else { Angle::Narrow };
             for index in 0..steps.tries {
                 let returns = match index {
-                    _ if is_first => RETURNS,
-                    0 => 1,
-                    _ => 0,
+                    _ if steps.tries > WARM => RETURNS,
+                    1.. if steps.since == Since::Moved => 0,
+                    _ => 1,
                 };
                 frame.apply(pass, returns, angle);
                 frame.each(pass, &krylov.take, &memory.krylov);
@@ -223,7 +257,7 @@ impl TransportStage {
                 frame.one(pass, &krylov.weigh_direction);
                 frame.each(pass, &krylov.part, &memory.krylov);
                 frame.one(pass, &krylov.turn);
-                frame.minimise(pass);
+                frame.minimise(pass, &krylov.weigh_residual);
             }
             if steps.seen {
                 frame.send(pass, &self.charge_found);
@@ -324,10 +358,10 @@ impl<'a> Recorder<'a> {
     }
 
     /// The least residual that the directions leave, and the next trial.
-    fn minimise(&self, pass: &mut Pass<'_>) {
+    fn minimise(&self, pass: &mut Pass<'_>, weigh: &ComputePipeline) {
         let krylov = &self.stage.krylov;
         self.groups(pass, &krylov.project_residual);
-        self.one(pass, &krylov.weigh_residual);
+        self.one(pass, weigh);
         self.each(pass, &krylov.advance, &self.memory.krylov);
         self.one(pass, &krylov.give_up);
     }
