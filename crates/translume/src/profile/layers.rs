@@ -17,7 +17,7 @@ use std::sync::Arc;
 /// use translume::{Layer, Layers, Medium, Profile};
 ///
 /// // 1.5 mm of skin over fat without end.
-/// let fat = Layer { medium: Medium { sigma_s_prime: [1.2, 1.1, 1.0], sigma_a: [0.01, 0.02, 0.04], ior: 1.3 }, thickness_mm: f32::INFINITY };
+/// let fat = Layer { medium: Medium { sigma_s_prime: [1.2, 1.1, 1.0], sigma_a: [0.01, 0.02, 0.04], ior: 1.3, g: 0.0 }, thickness_mm: f32::INFINITY };
 /// let profile = Profile::Multipole(Layers { thickness_mm: 1.5, below: [fat].into() });
 /// profile.validate()?;
 /// # Ok::<(), translume::Error>(())
