@@ -185,12 +185,13 @@ fn seen<'a>(pose: &'a Pose, lights: &'a [Light]) -> translume::Frame<'a> {
     frame
 }
 
+/// Measured .01 %, and 1.6 % in the frame that jumped.
 #[test]
 fn a_body_that_moved_comes_to_rest() {
-    holds(comes_to_rest(&[0.0, 0.05, 0.1, 0.15, 0.2], 5, 0.001));
+    holds(comes_to_rest(&[0.0, 0.05, 0.1, 0.15, 0.2], 3, 0.0005));
     let jump = [0.0, 0.0, 0.0, 0.0002, 0.67];
-    holds(comes_to_rest(&jump, 5, 0.001));
-    notices(comes_to_rest(&jump, 0, 0.001));
+    holds(comes_to_rest(&jump, 3, 0.0005));
+    notices(comes_to_rest(&jump, 0, 0.0005));
 }
 
 /// Figures: `TRANSLUME_MODELS=… cargo test --release -p translume-tests --test gpu -- --ignored --nocapture sixty_frames`.

@@ -12,8 +12,9 @@ use crate::{Error, Frame, Medium, Profile, Transport, phase, transport};
 use glam::Mat4;
 use std::sync::Arc;
 
-/// Frames after the last change that still solve, by two tries each: of twelve tries .05 % of the creature is left after a morph, of six up to .6 %.
-const SETTLING: u32 = 5;
+/// Frames after the last change that still solve, by two tries each: after a jump through two thirds of its morph .06 % of the creature is left after two
+/// of them, .01 % after three and .002 % after four.
+const SETTLING: u32 = 3;
 
 /// A tolerance is one of the mean, and a body lit from behind is a hundred times darker than that where it is seen: at the opening angle that serves
 /// exitance squares of the tree show on the bunny, at .77 of it in places, at .6 nowhere.
