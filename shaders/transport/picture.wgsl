@@ -297,9 +297,9 @@ fn brighter(optical: vec3f, cosine: f32, cosines: vec2f) -> vec3f {
 
 // The table of what spreads: its steps, and the depth of the last row in scattering lengths.
 const SPREAD_STEPS: u32 = 16u;
+const SPREAD_DEEPEST: f32 = 6.0;
 // A beam is as wide as this share of its way, seen from where it runs along the surface.
 const SPREAD_WIDTH: f32 = 0.15;
-const SPREAD_DEEPEST: f32 = 6.0;
 
 // Where a share of its range is in steps; there is one beyond.
 fn spread_step(share: f32) -> f32 {
