@@ -16,7 +16,7 @@ const QUARTER_PI_INVERSE: f32 = 0.07957747;
 // The least square of a distance, mm².
 const LEAST_R2: f32 = 1e-12;
 // Where light scatters first no more than this share of the distance away, it is one source and how far that is spread out.
-const SHALLOW: f32 = 0.8;
+const SHALLOW: f32 = 0.6;
 // A source's second moments change what it sends by no more than this share of it.
 const MOST_CORRECTION: f32 = 1.0;
 
@@ -190,7 +190,7 @@ fn distance_square(source: u32, seen: vec4f, place: Place) -> f32 {
     if LIGHT && seen.w > 0.0 {
         let u = strata[source].direction;
         let along = (o.x * u.x + o.y * u.y + o.z * u.z) / max(dot(u, u), 1e-12);
-        r2 = square(beyond(o, -u, clamp(along, vec4f(0.0), ways(strata[source], STRATA - 2u))));
+        r2 = square(beyond(o, -u, clamp(along, vec4f(0.0), way_of(source, STRATA - 2u))));
     }
     return min(r2.x, min(r2.y, r2.z));
 }
@@ -209,7 +209,7 @@ fn moved_to(e: Expansion, before: Place, place: Place) -> Expansion {
 struct Parts {
     charge: Charge,
     direction: vec3f,
-    mean: Mean,
+    normal: vec3f,
     count: u32,
 }
 
@@ -219,9 +219,9 @@ fn parts(source: u32, d: Places) -> Parts {
     p.count = 1u;
     if LIGHT {
         p.direction = strata[source].direction;
-        p.mean = all_strata(strata[source]);
+        p.normal = shapes[source].normal;
         let r2 = square(d);
-        let reach = deepest(strata[source]);
+        let reach = strata[source].mean.w;
         p.count = select(STRATA, 1u, reach * reach < SHALLOW * SHALLOW * min(min(r2.x, r2.y), r2.z));
     }
     return p;
@@ -237,11 +237,14 @@ fn part(p: ptr<function, Parts>, source: u32, d: Places, k: u32) -> Part {
     let whole = (*p).charge;
     if !LIGHT { return Part(d, Line(vec3f(0.0), vec4f(0.0)), whole); }
     let u = (*p).direction;
-    let up = shapes[source].normal;
-    if (*p).count == 1u { return Part(beyond(beyond(d, -u, (*p).mean.mean), -up, (*p).mean.rise), Line(u, (*p).mean.square), whole); }
+    let up = (*p).normal;
+    if (*p).count == 1u {
+        let way = vec4f(strata[source].mean.rgb, 0.0);
+        return Part(beyond(beyond(d, -u, way), -up, strata[source].rise), Line(u, strata[source].square), whole);
+    }
     let share = SHARES[k];
     let charge = Charge(share * whole.power, share * whole.x, share * whole.y, share * whole.z);
-    return Part(beyond(beyond(d, -u, ways(strata[source], k)), -up, vec4f(strata[source].rises[k].rgb, 0.0)), Line(u, vec4f(0.0)), charge);
+    return Part(beyond(beyond(d, -u, way_of(source, k)), -up, vec4f(strata[source].rises[k].rgb, 0.0)), Line(u, vec4f(0.0)), charge);
 }
 
 // Adds what a source sends to a group of receivers of this size.
@@ -254,27 +257,8 @@ fn collect(e: ptr<function, Expansion>, source: u32, place: Place, size: f32) {
     }
 }
 
-// All strata as one: their mean way and rise, and the mean square of what they are apart.
-struct Mean {
-    mean: vec4f,
-    rise: vec4f,
-    square: vec4f,
-}
-
-fn all_strata(s: Strata) -> Mean {
-    var m: Mean;
-    for (var k = 0u; k < STRATA; k++) {
-        let way = ways(s, k);
-        m.mean += SHARES[k] * way;
-        m.square += SHARES[k] * way * way;
-        m.rise += SHARES[k] * vec4f(s.rises[k].rgb, 0.0);
-    }
-    m.square -= m.mean * m.mean;
-    return m;
-}
-
-fn ways(s: Strata, k: u32) -> vec4f {
-    return vec4f(s.ways[k].rgb, 0.0);
+fn way_of(source: u32, k: u32) -> vec4f {
+    return vec4f(strata[source].ways[k].rgb, 0.0);
 }
 
 fn count_evaluations(e: ptr<function, Expansion>, share: f32) {

@@ -73,11 +73,28 @@ struct Strata {
     ways: array<vec4f, STRATA>,
     // RGB, mm, outwards along the normal.
     rises: array<vec4f, STRATA>,
+    // Of all of them the mean way, mm, and in w the longest in any channel; the mean rise; and the mean square of how far ways are from their mean, mm².
+    mean: vec4f,
+    rise: vec4f,
+    square: vec4f,
 }
 
-// The longest of its ways, mm.
-fn deepest(s: Strata) -> f32 {
-    return max(s.ways[STRATA - 1u].x, max(s.ways[STRATA - 1u].y, s.ways[STRATA - 1u].z));
+// Strata whose ways and rises are known, with what they are together.
+fn summed_up(s: Strata) -> Strata {
+    var all = s;
+    all.mean = vec4f(0.0);
+    all.rise = vec4f(0.0);
+    all.square = vec4f(0.0);
+    for (var k = 0u; k < STRATA; k++) {
+        let way = vec4f(s.ways[k].rgb, 0.0);
+        all.mean += SHARES[k] * way;
+        all.square += SHARES[k] * way * way;
+        all.rise += SHARES[k] * vec4f(s.rises[k].rgb, 0.0);
+    }
+    all.square -= all.mean * all.mean;
+    let last = s.ways[STRATA - 1u];
+    all.mean.w = max(last.x, max(last.y, last.z));
+    return all;
 }
 
 fn node_index(level: u32, node: u32) -> u32 {

@@ -10,5 +10,6 @@ struct Shape {
     area: f32,
     // Σ A n (x − middle), its symmetric part, over area and spread: how the surface turns.
     turns: vec3u,
-    padding: u32,
+    // As a source, mm; sums that know moments take its bounds'.
+    size: f32,
 }

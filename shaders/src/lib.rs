@@ -147,6 +147,7 @@ pub const SOURCE: Shader = transport!(
     "shared/lights.wgsl",
     "shared/node.wgsl",
     "shared/ray.wgsl",
+    "shared/fan.wgsl",
     "shared/beam.wgsl",
     "shared/site_light.wgsl",
     "shared/stratum.wgsl",

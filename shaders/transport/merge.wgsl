@@ -50,7 +50,7 @@ fn light(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: v
         mean.ways[s] *= scale;
         mean.rises[s] *= scale;
     }
-    strata[own] = mean;
+    strata[own] = summed_up(mean);
 }
 
 // What the surface sends.

@@ -118,8 +118,9 @@ fn returning(index: u32, normal: vec3f) -> vec4f {
         var above = receives;
         if at_level > 0u { above += extent_along(nodes[node_index(at_level, node)], normal); }
         let facing = shapes[source].normal;
+        let size = shapes[source].size;
         let theta = select(THETA_SQUARED, THETA_SQUARED_MIXED, dot(facing, facing) < ONE_WAY);
-        if at_level > 0u && place.w * place.w > theta * square && above > 0.0 {
+        if at_level > 0u && size * size > theta * square && above > 0.0 {
             at_level -= 1u;
             node *= 4u;
             continue;

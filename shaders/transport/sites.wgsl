@@ -9,6 +9,9 @@
 @group(0) @binding(5) var<storage, read_write> shapes: array<Shape>;
 @group(0) @binding(6) var<uniform> transport: Transport;
 
+// Where normals cancel, moments say less of what a cluster sends: sums take it to be larger by so much of what is lost of its mean normal, squared.
+const MIXED: f32 = 2.0;
+
 // Rays meet a disc within its own half diagonal or that of a usual one.
 fn disc_node(index: u32) -> Node {
     let place = site_positions[index];
@@ -29,7 +32,7 @@ fn from_discs(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) grou
             children[k] = disc_node(site);
             bounds[site] = vec4f(site_positions[site].xyz, select(0.0, NO_SIZE, area > 0.0));
             let moments = packed_moments(disc_moments(normalize(normal)));
-            shapes[site] = Shape(normal, disc_spread(area), moments, area, vec3u(0u), 0u);
+            shapes[site] = Shape(normal, disc_spread(area), moments, area, vec3u(0u), NO_SIZE);
         }
     }
     store(node, &children);
@@ -96,8 +99,9 @@ fn store(node: u32, children: ptr<function, array<Node, 4>>) {
     let unit = select(0.0, 1.0 / spread, spread > 0.0);
     let turning = packed_moments(Moments(unit * turns.diagonal, unit * turns.mixed));
     nodes[level.node_offset + node] = own;
-    shapes[level.source_offset + node] = Shape(normal, spread, moments, area, turning, 0u);
     let size = select(0.0, max(size_of(spread, own.radius), NO_SIZE), area > 0.0);
-    bounds[level.source_offset + node] = vec4f(own.centre, size);
+    let mixed = max(1.0 - dot(normal, normal), 0.0);
+    shapes[level.source_offset + node] = Shape(normal, spread, moments, area, turning, size);
+    bounds[level.source_offset + node] = vec4f(own.centre, size * (1.0 + MIXED * mixed));
     bounds[level.receiver_offset + node] = vec4f(own.middle, size_of(own.scatter, own.reach));
 }

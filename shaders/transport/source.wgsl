@@ -13,8 +13,6 @@
 @group(0) @binding(8) var<storage, read_write> entered: array<vec4f>;
 @group(0) @binding(9) var<storage, read> surroundings: array<Surroundings>;
 
-// Directions of the sky from each site.
-const SKY: u32 = 8u;
 // Share of a lamp's light from which on nothing is in its way.
 const LIT: f32 = 0.98;
 // Rays leave the surface beyond so many of a site's width.
@@ -101,7 +99,7 @@ fn enter(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: v
     }
     own.ways[0].w = select(0.0, weight / whole, whole > 0.0);
     own.ways[1].w = thickness;
-    strata[index] = own;
+    strata[index] = summed_up(own);
     // Of an even sky, some crosses in a shorter way than the middle one.
     var kept = vec3f(1.0);
     for (var k = 0u; k < SKY_POINTS; k++) {
@@ -134,19 +132,17 @@ fn curvature(index: u32) -> f32 {
     return select(0.0, turned / apart, apart > 0.0);
 }
 
-// Share of an even sky that the body hides, from a few directions.
+// Share of an even sky that the body hides, from a few directions. Those of sites one after the other go on in one sequence that covers the square evenly, with
+// the powers of the plastic number (Roberts, The Unreasonable Effectiveness of Quasirandom Sequences, 2018), in 32-bit fractions.
 fn hidden_sky(index: u32, position: vec3f, normal: vec3f, width: f32) -> f32 {
     let tangent = any_perpendicular(normal);
     let bitangent = cross(normal, tangent);
-    // Neighbours look elsewhere: a turn by the golden angle, and another place in each ring.
-    let turn = 2.3999632 * f32(index);
-    var hidden = 0.0;
-    for (var k = 0u; k < SKY; k++) {
-        let u = (f32(k) + fract(0.6180340 * f32(index) + 0.5)) / f32(SKY);
-        let angle = turn + 2.3999632 * f32(k);
-        let aside = sqrt(u);
-        let direction = sqrt(1.0 - u) * normal + aside * (cos(angle) * tangent + sin(angle) * bitangent);
-        if crossing(position, direction, CLEAR * width, FAR, -1.0, true).site != NO_SITE { hidden += 1.0; }
+    var fan: Fan;
+    for (var k = 0u; k < RAYS; k++) {
+        let n = index * RAYS + k;
+        let u = f32(n * 3242174889u) / 4294967296.0;
+        let angle = f32(n * 2447445414u) * (6.2831853 / 4294967296.0);
+        point(&fan, k, sqrt(1.0 - u) * normal + sqrt(u) * (cos(angle) * tangent + sin(angle) * bitangent));
     }
-    return hidden / f32(SKY);
+    return share_that_enters(&fan, position, normal, CLEAR * width);
 }

@@ -61,7 +61,7 @@ fn once_scattered(origin: vec3f, direction: vec3f, cosine: f32, chord: f32) -> v
         let offset = centre - origin;
         let beside = offset - direction * clamp(dot(offset, direction), 0.0, longest);
         let u = light.direction;
-        let apart = beside + u * clamp(-dot(beside, u) / max(dot(u, u), 1e-12), 0.0, deepest(light));
+        let apart = beside + u * clamp(-dot(beside, u) / max(dot(u, u), 1e-12), 0.0, light.mean.w);
         let square = dot(apart, apart);
         let is_out_of_sight = sqrt(square) - reach > FURTHEST * free_path || power <= 0.0;
         if level > 0u && !is_out_of_sight && reach * reach > OPENING_SQUARED * (square + wide * wide) {

@@ -344,7 +344,7 @@ pub(crate) struct ShapeLayout {
     pub moments: [u32; 3],
     pub area: f32,
     pub turns: [u32; 3],
-    pub padding: u32,
+    pub size: f32,
 }
 
 /// A group of texels that bounds rays and receives.
@@ -380,6 +380,9 @@ pub(crate) struct StrataLayout {
     pub cosine: f32,
     pub ways: [[f32; 4]; 4],
     pub rises: [[f32; 4]; 4],
+    pub mean: [f32; 4],
+    pub rise: [f32; 4],
+    pub square: [f32; 4],
 }
 
 /// φ under a texel.

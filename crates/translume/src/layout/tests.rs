@@ -195,9 +195,9 @@ fn rust_and_wgsl_agree() {
     );
     check!(NEAR, "Surroundings", SurroundingsLayout, [count, reach, sites]);
     check!(GROUP, "SiteLight", SiteLightLayout, [irradiance, tint]);
-    check!(POTENTIAL, "Shape", ShapeLayout, [normal, spread, moments, area, turns]);
+    check!(POTENTIAL, "Shape", ShapeLayout, [normal, spread, moments, area, turns, size]);
     check!(POTENTIAL, "Charge", ChargeLayout, [power, x, y, z]);
-    check!(POTENTIAL, "Strata", StrataLayout, [direction, cosine, ways, rises]);
+    check!(POTENTIAL, "Strata", StrataLayout, [direction, cosine, ways, rises, mean, rise, square]);
     let (_, expansion) = naga_layout(translume_shaders::POTENTIAL.source, "Expansion");
     assert_eq!(u64::from(expansion), crate::stages::scatter::dual::EXPANSION);
     check!(SITES, "Node", NodeLayout, [centre, radius, axis, thickness, middle, reach, scatter, sites]);

@@ -22,7 +22,7 @@ const DIRECTIONS: u64 = StateLayout::DIRECTIONS as u64;
 /// Of pairs of them, of each with a target, and two more.
 const PRODUCTS: u64 = DIRECTIONS * (DIRECTIONS + 1) / 2 + DIRECTIONS + 2;
 /// `Angle::Wide` over `Angle::Narrow`, and no wider than this: beyond, expansions say little.
-const WIDER: f32 = 2.3;
+const WIDER: f32 = 1.9;
 const WIDEST: f32 = 0.9;
 
 pub(crate) struct TransportMemory {
