@@ -7,7 +7,7 @@
 //! | --- | --- | --- |
 //! | `transport/group.wgsl` | texels, so many to a site | |
 //! | `transport/sites.wgsl` | sites as discs, summed up their tree | `sites` |
-//! | `transport/source.wgsl`, `shared/ray.wgsl` | where light scatters first, through what it came, what the body hides of the sky | `source`, `rays` |
+//! | `transport/source.wgsl`, `shared/ray.wgsl`, `shared/fan.wgsl` | where light scatters first, through what it came, what the body hides of the sky | `source`, `rays` |
 //! | `transport/merge.wgsl` | what sites send, summed up their tree | |
 //! | `kernel/potential.wgsl`, `dual.wgsl` | the sums of the equation | `equation`, `disc` |
 //! | `transport/returning.wgsl` | light that enters again | `equation` |
