@@ -323,9 +323,10 @@ fn the_first_frame_solves_the_equation() {
     ));
 }
 
-fn furnace(medium: Medium, bound: f64) -> Check {
-    let mut fixture = fixture(&sphere_with(64), medium, Transport::Boundary);
-    fixture.run(&Pose::rest(0).frame(&[Light::Ambient(AmbientLight::default())]));
+fn furnace(model: &Arc<Model>, medium: Medium, shadow: bool, bound: f64) -> Check {
+    let mut fixture = fixture(model, medium, Transport::Boundary);
+    let sky = Light::Ambient(AmbientLight { shadow, ..AmbientLight::default() });
+    fixture.run(&Pose::rest(model.mesh.targets.len()).frame(&[sky]));
     let white = vec![[std::f64::consts::PI; 3]; fixture.exitance().len()];
     at_most("furnace", apart(&fixture, &fixture.exitance(), &white), bound)
 }
@@ -334,8 +335,17 @@ fn furnace(medium: Medium, bound: f64) -> Check {
 #[test]
 fn a_white_body_vanishes_in_a_white_sky() {
     let white = Medium { sigma_s_prime: [0.1, 0.2, 0.3], sigma_a: [0.0; 3], ior: 1.0, g: 0.0 };
-    holds(furnace(white, 0.025));
-    notices(furnace(Medium { sigma_a: [0.002; 3], ..white }, 0.025));
+    let ball = sphere_with(64);
+    holds(furnace(&ball, white, false, 0.025));
+    notices(furnace(&ball, Medium { sigma_a: [0.002; 3], ..white }, false, 0.025));
+}
+
+/// In its hollows light comes in again in place of the sky. Measured 7.4 %; 12.5 % were none to come in, and 10.6 % where the whole sky does, too.
+#[test]
+fn a_concave_white_body_vanishes_too() {
+    let white = Medium { sigma_s_prime: [1.0, 2.0, 3.0], sigma_a: [0.0; 3], ior: 1.0, g: 0.0 };
+    holds(furnace(&creature(), white, true, 0.09));
+    notices(furnace(&creature(), white, false, 0.09));
 }
 
 const EYE: [f32; 3] = [0.0, 0.0, 300.0];
