@@ -18,10 +18,10 @@ struct Crossing {
 
 // The first crossing beyond `begin` that leaves the body (side 1) or enters it (side −1).
 fn first_crossing(origin: vec3f, direction: vec3f, begin: f32, side: f32) -> Crossing {
-    return crossing(origin, direction, begin, FAR, side, false);
+    return crossing(origin, direction, begin, FAR, side);
 }
 
-fn crossing(origin: vec3f, direction: vec3f, begin: f32, most: f32, side: f32, any_will_do: bool) -> Crossing {
+fn crossing(origin: vec3f, direction: vec3f, begin: f32, most: f32, side: f32) -> Crossing {
     var best = Crossing(most, NO_SITE);
     var level = transport.top_level;
     var node = 0u;
@@ -46,7 +46,7 @@ fn crossing(origin: vec3f, direction: vec3f, begin: f32, most: f32, side: f32, a
         let next = passed(transport.site_count, transport.top_level, Step(level, node));
         level = next.level;
         node = next.node;
-        if level == transport.top_level || (any_will_do && best.site != NO_SITE) { break; }
+        if level == transport.top_level { break; }
     }
     if best.site == NO_SITE { best.t = FAR; }
     return best;

@@ -262,7 +262,7 @@ fn arriving_at(index: u32, position: vec3f, facet: vec3f, width: f32) -> Arrivin
     if all(comes.strength <= vec3f(0.0)) { return nothing_arriving(0.0, facet, facet); }
     let is_straight = transport.eta == 1.0 || dot(facet, comes.to_light) <= 0.0;
     let to_surface = select(bent(comes.to_light, facet), comes.to_light, is_straight);
-    let entry = crossing(position, to_surface, 0.0, comes.far, 1.0, false);
+    let entry = crossing(position, to_surface, 0.0, comes.far, 1.0);
     if entry.site == NO_SITE { return nothing_arriving(0.0, facet, to_surface); }
     let normal = normalize(site_normals[entry.site].xyz);
     let outside = dot(normal, comes.to_light);
